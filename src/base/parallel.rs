@@ -1,45 +1,44 @@
-//! Work in pieces that are far from even: tiles, patches, groups of records.
+//! Parallel work in pieces of uneven cost: tiles, patches, groups of records.
 //!
-//! Left to itself a thread goes through a long run of pieces that no other may shorten, and the others wait for the
-//! last run: in a staircase, on two threads, for a seventh of the time of cuts and a twentieth of that of eye samples.
-//! So threads take one piece after the other. Workspaces outlive the pieces ([`Workspaces`]): made anew for each, they
-//! would take 4 % of the time, for memory that grows again.
+//! Rayon's default is long runs of pieces, which no other thread can shorten, so threads wait for the last run. Here
+//! threads take one piece, or a few, at a time.
+//!
+//! [`Workspaces`] keeps the buffers of threads from piece to piece, so that memory need not grow again.
 
 use rayon::iter::{IndexedParallelIterator, MaxLen};
 use std::sync::{Mutex, PoisonError};
 
-/// Pieces in a short run.
-const SHORT: usize = 16;
+/// Maximum number of items in a short run.
+const SHORT_RUN: usize = 16;
 
-/// Parallel iterators whose items are pieces of work, some far longer than others.
+/// Parallel iterators over pieces of uneven cost.
 pub trait ShortRuns: IndexedParallelIterator {
-    /// The same, of which threads take one item after the other from each other: for items of a millisecond or so.
+    /// Limits rayon's splits to one item, for items of a millisecond or more.
     fn one_by_one(self) -> MaxLen<Self> {
         self.with_max_len(1)
     }
 
-    /// The same, of which threads take some items after the others: for items of some microseconds.
+    /// Limits rayon's splits to 16 items, for items of some microseconds.
     fn in_short_runs(self) -> MaxLen<Self> {
-        self.with_max_len(SHORT)
+        self.with_max_len(SHORT_RUN)
     }
 }
 
 impl<I: IndexedParallelIterator> ShortRuns for I {}
 
-/// Workspaces of threads, of which no more are made than are in use at a time. Results must not depend on what one was
-/// used for before.
+/// Workspaces of threads, as many as are in use at a time. Results must not depend on the previous use of a workspace.
 pub struct Workspaces<T, F> {
     make: F,
     idle: Mutex<Vec<T>>,
 }
 
 impl<T, F: Fn() -> T> Workspaces<T, F> {
-    /// None as yet; `make` makes one.
+    /// Returns an empty set; `make` makes a workspace.
     pub fn new(make: F) -> Workspaces<T, F> {
         Workspaces { make, idle: Mutex::new(Vec::new()) }
     }
 
-    /// Runs `work` in one that nobody else uses meanwhile.
+    /// Runs `work` with a workspace that no other thread uses meanwhile.
     pub fn with<R>(&self, work: impl FnOnce(&mut T) -> R) -> R {
         let idle = || self.idle.lock().unwrap_or_else(PoisonError::into_inner);
         let free = idle().pop();
@@ -70,7 +69,7 @@ mod tests {
                 workspaces.with(|work| {
                     work.clear();
                     work.push(i);
-                    // One within the other is another.
+                    // Nested uses get different workspaces.
                     workspaces.with(|other| other.push(0));
                     work[0]
                 })

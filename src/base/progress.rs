@@ -1,39 +1,39 @@
-//! Progress and cancellation of a running method, from another thread.
+//! Progress and cancellation of a running method, seen from another thread.
 //!
-//! A method calls [`Control::begin`] when a stage starts, [`Control::advance`] as it goes, and between units
-//! of work (a tile, a batch of photon paths) asks [`Control::is_cancelled`]; once that is true it returns its
-//! partial result, marked incomplete. Nothing here influences the picture.
+//! A method calls [`Control::begin`] at the start of a stage, and [`Control::advance`] during it. Between units of work
+//! (a tile, a batch of photon paths) it asks [`Control::is_cancelled`]. If that is true, the method returns its partial
+//! result, marked incomplete. Nothing here influences the image.
 
 use crate::stats::Stage;
 use std::mem;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// State shared between the thread that renders and those that watch it.
+/// State shared between the rendering thread and watching threads.
 #[derive(Debug, Default)]
 pub struct Control {
     cancelled: AtomicBool,
-    /// Stage and total; `done` is reset under this lock, so a snapshot never mixes two stages.
-    stage: Mutex<Begun>,
+    /// Stage and total. `done` is reset under this lock, so a snapshot never mixes two stages.
+    stage: Mutex<ProgressState>,
     done: AtomicU64,
 }
 
 #[derive(Debug, Default)]
-struct Begun {
-    /// The current stage, and its total.
+struct ProgressState {
+    /// Current stage and its total.
     current: Option<(Stage, u64)>,
     /// True while settings are planned.
     is_planning: bool,
-    /// Stages of the frame that [`Control::news`] has returned, or is to return.
-    told: Vec<Stage>,
+    /// Stages of the frame that [`Control::news`] has returned or will return.
+    reported: Vec<Stage>,
     news: Vec<Stage>,
 }
 
-impl Begun {
-    /// Each stage of a frame is news once.
-    fn tell(&mut self, stage: Stage) {
-        if !self.told.contains(&stage) {
-            self.told.push(stage);
+impl ProgressState {
+    /// Adds a stage to the news, once per frame.
+    fn report(&mut self, stage: Stage) {
+        if !self.reported.contains(&stage) {
+            self.reported.push(stage);
             self.news.push(stage);
         }
     }
@@ -44,28 +44,28 @@ impl Begun {
 pub struct Progress {
     /// The current stage.
     pub stage: Stage,
-    /// True if it is a part of planning settings.
+    /// True if the stage is part of planning settings.
     pub is_planning: bool,
     /// Units of work done in this stage, at most `total`.
     pub done: u64,
-    /// Units of work in this stage; 0 if not known.
+    /// Total units of work in this stage; 0 if unknown.
     pub total: u64,
 }
 
 impl Progress {
-    /// The stage that people are told: planning, or the current one.
-    pub fn told(&self) -> Stage {
+    /// Returns the stage to display: planning, or the current one.
+    pub fn displayed_stage(&self) -> Stage {
         if self.is_planning { Stage::Plan } else { self.stage }
     }
 }
 
 impl Control {
-    /// Creates a control: not cancelled, no stage begun.
+    /// Creates a control: not cancelled, no stage state.
     pub fn new() -> Control {
         Control::default()
     }
 
-    /// Asks the method to stop soon. Safe to call from a signal-handling thread, any number of times.
+    /// Asks the method to stop soon. May be called from a signal-handling thread, any number of times.
     pub fn cancel(&self) {
         self.cancelled.store(true, Ordering::Relaxed);
     }
@@ -76,32 +76,32 @@ impl Control {
         self.cancelled.load(Ordering::Relaxed)
     }
 
-    /// Forgets the stages of the frame before.
+    /// Clears the stages of the previous frame.
     pub fn begin_frame(&self) {
-        *self.lock() = Begun::default();
+        *self.lock() = ProgressState::default();
     }
 
-    /// Starts a stage of `total` units (0 if their number is not known). Stages follow one another.
+    /// Starts a stage of `total` units; 0 if unknown. Stages are consecutive.
     pub fn begin(&self, stage: Stage, total: u64) {
-        let mut begun = self.lock();
+        let mut state = self.lock();
         self.done.store(0, Ordering::Relaxed);
-        begun.current = Some((stage, total));
-        if !begun.is_planning {
-            begun.tell(stage);
+        state.current = Some((stage, total));
+        if !state.is_planning {
+            state.report(stage);
         }
     }
 
-    /// Does `work`, whose stages are parts of planning settings and not of the picture.
+    /// Runs `work`, whose stages are part of planning settings.
     pub fn plan<R>(&self, work: impl FnOnce() -> R) -> R {
         self.begin(Stage::Plan, 0);
         self.lock().is_planning = true;
         let result = work();
-        let mut begun = self.lock();
-        (begun.is_planning, begun.current) = (false, Some((Stage::Plan, 0)));
+        let mut state = self.lock();
+        (state.is_planning, state.current) = (false, Some((Stage::Plan, 0)));
         result
     }
 
-    /// Counts `n` more finished units of the current stage. Callable from any worker.
+    /// Counts `n` more finished units of the current stage. Any worker may call it.
     #[inline]
     pub fn advance(&self, n: u64) {
         self.done.fetch_add(n, Ordering::Relaxed);
@@ -114,19 +114,19 @@ impl Control {
 
     /// Returns the stages of the frame that began since the last call, each once, and the progress.
     pub fn news(&self) -> (Vec<Stage>, Option<Progress>) {
-        let mut begun = self.lock();
-        (mem::take(&mut begun.news), self.progress_of(&begun))
+        let mut state = self.lock();
+        (mem::take(&mut state.news), self.progress_of(&state))
     }
 
-    fn progress_of(&self, begun: &Begun) -> Option<Progress> {
-        let (stage, total) = begun.current?;
+    fn progress_of(&self, state: &ProgressState) -> Option<Progress> {
+        let (stage, total) = state.current?;
         let done = self.done.load(Ordering::Relaxed);
         let done = if total > 0 { done.min(total) } else { done };
-        Some(Progress { stage, is_planning: begun.is_planning, done, total })
+        Some(Progress { stage, is_planning: state.is_planning, done, total })
     }
 
-    fn lock(&self) -> MutexGuard<'_, Begun> {
-        // The data is plain: a panic elsewhere cannot have left it half-written.
+    fn lock(&self) -> MutexGuard<'_, ProgressState> {
+        // The data is plain, so a panic in another thread cannot have left it inconsistent.
         self.stage.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }

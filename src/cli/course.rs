@@ -141,7 +141,7 @@ impl RunProgress {
     }
 
     fn in_frame(&mut self, now: &Progress) -> f64 {
-        if now.told() == Stage::Plan {
+        if now.displayed_stage() == Stage::Plan {
             return 0.0;
         }
         let first = *self.first.get_or_insert(now.stage);

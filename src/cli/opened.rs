@@ -1,58 +1,49 @@
 //! Reads the scene of a command and prints the warnings.
 
 use super::exit::Failure;
-use super::outputs::Inputs;
 use super::{interrupt, talk};
-use base::stats::{Stage, Stats};
-use readers::{Level, LoadOptions, Loaded, SceneError, Warning, load};
-use render::session::{OpenError, Session};
+use readers::{LoadOptions, Loaded, SanitizeReport, SceneError, Severity, Warning, load};
+use render::session::{OpenError, Opened, Session};
 use std::path::Path;
 
-/// Reads the scene at `path`.
-pub fn read(path: &Path, options: &LoadOptions) -> Result<Loaded, Failure> {
-    let loaded = load(path, options).map_err(|error| match error {
-        // The scene is valid. The command line asks for a camera that it lacks.
-        SceneError::Camera { .. } => Failure::usage(error),
-        _ => Failure::input(error),
+/// Opens a session on the scene at `path`, and prints the warnings.
+pub fn open(path: &Path, options: &LoadOptions) -> Result<Opened, Failure> {
+    let opened = interrupt::while_opening(|| Session::open(path, options)).map_err(|error| match error {
+        OpenError::Scene(error) => unreadable(error),
+        OpenError::Build { .. } => Failure::render(error),
     })?;
-    for (warning, times) in grouped(&loaded.warnings) {
-        let more = if times > 1 { format!(" (and at {} more places)", times - 1) } else { String::new() };
-        match warning.level {
-            Level::Note => talk::note(&format!("{warning}{more}")),
-            Level::Warning => talk::warning(&format!("{warning}{more}")),
-        }
-    }
-    if !loaded.repairs.is_clean() {
-        talk::note(&format!("{}: {}", path.display(), loaded.repairs));
-    }
+    report(path, &opened.warnings, &opened.repairs);
+    Ok(opened)
+}
+
+/// Reads the scene at `path` without preparing it for rendering, and prints the warnings.
+pub fn read(path: &Path, options: &LoadOptions) -> Result<Loaded, Failure> {
+    let loaded = load(path, options).map_err(unreadable)?;
+    report(path, &loaded.warnings, &loaded.repairs);
     Ok(loaded)
 }
 
-/// A session with facts about its scene file.
-pub struct Opened {
-    /// The session.
-    pub session: Session,
-    /// Number of warnings of the reader.
-    pub warnings: usize,
-    /// Files that the scene consists of.
-    pub inputs: Inputs,
+/// Returns the failure of a scene that cannot be read.
+fn unreadable(error: SceneError) -> Failure {
+    match error {
+        // The scene is valid. The command line asks for a camera that it lacks.
+        SceneError::Camera { .. } => Failure::usage(error),
+        _ => Failure::input(error),
+    }
 }
 
-/// Opens a session on the scene at `path`.
-pub fn open(path: &Path, options: &LoadOptions) -> Result<Opened, Failure> {
-    interrupt::while_opening(|| open_now(path, options))
-}
-
-fn open_now(path: &Path, options: &LoadOptions) -> Result<Opened, Failure> {
-    let mut stats = Stats::new();
-    let loaded = stats.time(Stage::Load, || read(path, options))?;
-    let warnings = loaded.warnings.len();
-    let inputs = Inputs::new(&loaded.scene.sources);
-    let session = Session::of(loaded, path, stats).map_err(|error| match error {
-        OpenError::Scene(_) => Failure::input(error),
-        OpenError::Build { .. } => Failure::render(error),
-    })?;
-    Ok(Opened { session, warnings, inputs })
+/// Prints warnings and repairs.
+fn report(path: &Path, warnings: &[Warning], repairs: &SanitizeReport) {
+    for (warning, times) in grouped(warnings) {
+        let more = if times > 1 { format!(" (and at {} more places)", times - 1) } else { String::new() };
+        match warning.severity {
+            Severity::Note => talk::note(&format!("{warning}{more}")),
+            Severity::Warning => talk::warning(&format!("{warning}{more}")),
+        }
+    }
+    if !repairs.is_clean() {
+        talk::note(&format!("{}: {repairs}", path.display()));
+    }
 }
 
 /// Groups warnings that differ in their place only. Returns the first of each group with the number of its members.
@@ -60,7 +51,8 @@ fn grouped(warnings: &[Warning]) -> Vec<(&Warning, usize)> {
     let mut groups: Vec<(&Warning, usize)> = Vec::new();
     for warning in warnings {
         let same = |known: &Warning| {
-            (&known.what, &known.fallback, known.level) == (&warning.what, &warning.fallback, warning.level)
+            (&known.what, &known.fallback, known.severity)
+                == (&warning.what, &warning.fallback, warning.severity)
         };
         match groups.iter_mut().find(|(known, _)| same(known)) {
             Some((_, times)) => *times += 1,
@@ -73,13 +65,13 @@ fn grouped(warnings: &[Warning]) -> Vec<(&Warning, usize)> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use readers::Place;
+    use readers::Location;
 
     #[test]
     fn the_same_thing_at_many_places_is_said_once() {
         let at = |line, what: &str| Warning {
-            place: Place::line(Path::new("a.xml"), line),
-            level: Level::Warning,
+            place: Location::line(Path::new("a.xml"), line),
+            severity: Severity::Warning,
             what: what.to_owned(),
             fallback: "ignored".to_owned(),
         };

@@ -3,6 +3,7 @@
 use super::exit::Failure;
 use anyhow::anyhow;
 use base::film::atomic;
+use render::session::Session;
 use std::collections::BTreeSet;
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
@@ -52,6 +53,11 @@ impl Inputs {
     /// Builds the set of the files at `paths`.
     pub fn new<P: AsRef<Path>>(paths: impl IntoIterator<Item = P>) -> Inputs {
         Inputs(paths.into_iter().filter_map(|path| atomic::resolve(path.as_ref()).ok()).collect())
+    }
+
+    /// The files of a session's scene.
+    pub fn of(session: &Session) -> Inputs {
+        Inputs::new(&session.world.scene.sources)
     }
 
     /// Refuses an output that would replace an input or another output.

@@ -107,7 +107,7 @@ fn show_bar(control: &Control, stop: Receiver<()>) {
         let Some(progress) = control.progress() else { continue };
         if stage != Some((progress.stage, progress.is_planning)) {
             bar.set_style(if progress.total > 0 { known.clone() } else { unknown.clone() });
-            bar.set_message(progress.told().name());
+            bar.set_message(progress.displayed_stage().name());
             bar.set_length(progress.total);
             bar.reset();
             if stage.is_none() {
@@ -147,7 +147,7 @@ fn write_events(
     talk::event("progress", || {
         let (fraction, eta_seconds) = fraction_and_eta(&now);
         let fields = json!({
-            "stage": now.told(),
+            "stage": now.displayed_stage(),
             "done": now.done,
             "total": now.total,
             "fraction": fraction,
@@ -169,7 +169,7 @@ fn with_frame(number: Option<usize>, mut fields: Value) -> Value {
 fn write_for_agents(control: &Control, place: &str, fraction: impl FnOnce(&Progress) -> f64) {
     if let (_, Some(now)) = control.news() {
         talk::line(&format!("openjd_progress: {:.2}", 100.0 * fraction(&now)));
-        let stage = now.told().name();
+        let stage = now.displayed_stage().name();
         talk::line(&format!("openjd_status: {place}: {stage}"));
     }
 }

@@ -5,15 +5,15 @@ use super::course::{RunProgress, RunSpan, Stages};
 use super::exit::Failure;
 use super::job::RenderJob;
 use super::job_key;
-use super::opened::Opened;
+use super::outputs::{self, Inputs};
 use super::progress::Watch;
-use super::{interrupt, opened, outputs, picture, talk, threads};
+use super::{interrupt, opened, picture, talk, threads};
 use anyhow::{Context, anyhow};
 use base::film::SAMPLES;
 use base::progress::Control;
 use base::stats::{Stage, Stopwatch, peak_resident_bytes};
 use render::method::path::Begun;
-use render::session::{BLACK, Frame, FrameError, Remark};
+use render::session::{BLACK, Frame, FrameError, Opened, Remark};
 use std::fs;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -45,11 +45,12 @@ pub fn still(job: &RenderJob, opened: &Opened, span: RunSpan, control: &Control)
         return Ok(());
     }
     let paths = || [exr.as_path()].into_iter().chain(png);
-    opened.inputs.check_apart(paths())?;
+    let inputs = Inputs::of(&opened.session);
+    inputs.check_apart(paths())?;
     outputs::check_unprotected(paths())?;
     if let Some(png) = png.filter(|_| job.goal.method.text("inspect").is_some_and(|inspect| inspect == "on"))
     {
-        opened.inputs.check_layers(png)?;
+        inputs.check_layers(png)?;
     }
     let parts = [exr.clone(), picture::beside(exr)];
     let begun = parts.iter().filter(|_| job.resume);
@@ -153,7 +154,7 @@ fn render(
     if let Some(number) = job.framing.frame {
         frame.film.metadata.set("frame", number as f64);
     }
-    frame.facts["scene_warnings"] = (*warnings).into();
+    frame.facts["scene_warnings"] = warnings.len().into();
     Ok(frame)
 }
 

@@ -3,16 +3,16 @@
 use super::args::WalkArgs;
 use super::course::{RunProgress, RunSpan, Stages};
 use super::exit::Failure;
-use super::opened::Opened;
+use super::outputs::{self, Inputs};
 use super::progress::Watch;
 use super::walk_job::{PlannedChunk, WalkJob};
 use super::walk_report::WalkReport;
-use super::{interrupt, opened, outputs, picture, talk, threads};
+use super::{interrupt, opened, picture, talk, threads};
 use anyhow::{Context, anyhow};
 use base::film::{Exposure, Film, Image};
 use base::progress::Control;
 use base::stats::{Stage, Stopwatch};
-use render::session::{BLACK, Frame, FrameError, Remark, Session};
+use render::session::{BLACK, Frame, FrameError, Opened, Remark, Session};
 use render::walk::saved::{self, Pace};
 use render::walk::{Walk, exposure};
 use serde_json::json;
@@ -43,9 +43,10 @@ pub fn run(args: WalkArgs) -> Result<(), Failure> {
 pub fn walk(job: &WalkJob, opened: &Opened, span: RunSpan, control: &Control) -> Result<(), Failure> {
     let Opened { session, warnings, .. } = opened;
     let chunks = job.plan(session)?;
+    let inputs = Inputs::of(session);
     for number in chunks.iter().flat_map(|chunk| &chunk.frames) {
         let (exr, png) = job.files(*number);
-        opened.inputs.check_apart([&exr].into_iter().chain(&png).map(PathBuf::as_path))?;
+        inputs.check_apart([&exr].into_iter().chain(&png).map(PathBuf::as_path))?;
     }
     for number in chunks.iter().flat_map(PlannedChunk::unwritten) {
         let (exr, png) = job.files(number);
@@ -60,7 +61,7 @@ pub fn walk(job: &WalkJob, opened: &Opened, span: RunSpan, control: &Control) ->
     let progress = Watch::new(job.progress, RunProgress::new(count, Stages::of(&job.goal), span));
     let said = BTreeSet::new();
     let mut frames =
-        Frames { job, session, warnings: *warnings, control, factor: None, report, progress, said };
+        Frames { job, session, warnings: warnings.len(), control, factor: None, report, progress, said };
     let ended = chunks.into_iter().try_for_each(|chunk| frames.chunk(chunk));
     ended.and(frames.report.sum_up())
 }

@@ -1,38 +1,38 @@
-//! The acceleration structure over triangle meshes, and queries of one ray.
+//! Acceleration structure over triangle meshes, and queries of single rays.
 
 use super::ray::{ALL_GEOMETRY, CLEAR, OCCLUDING};
 use super::{Device, EmbreeError, Hit, Ray, Width};
 use embree4_sys as sys;
 use glam::Vec3;
 
-/// Coordinate from which on Embree leaves out a triangle (its `FLT_LARGE`).
+/// Coordinate from which Embree leaves out a triangle (its `FLT_LARGE`).
 const COORDINATE_LIMIT: f32 = 1.844e18;
 
-/// Triangles to build from; borrowed, for [`Accel::build`] copies them.
+/// Triangles to build from. [`Accel::build`] copies them.
 #[derive(Clone, Copy, Debug)]
 pub struct TriangleMesh<'a> {
     /// Vertex positions.
     pub positions: &'a [Vec3],
     /// Vertex indices of each triangle.
     pub triangles: &'a [[u32; 3]],
-    /// False if queries for occlusion are to leave it out.
+    /// False if queries for occlusion ignore it.
     pub occludes: bool,
 }
 
 /// Effort of Embree's build, and size of the result.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum BuildQuality {
-    /// Morton order: built fastest, traced slowest.
+    /// Morton order: fastest build, slowest traversal.
     Low,
-    /// Binned surface-area heuristic. Without further flags it is the fastest that loses no hits worth
-    /// counting (occlusion differs from `Robust` in about one ray of a million).
+    /// Binned surface-area heuristic. It is the fastest quality without significant loss of hits: occlusion differs
+    /// from `Robust` for about one ray in a million.
     #[default]
     Medium,
-    /// With spatial splits.
+    /// Quality `Medium` with spatial splits.
     High,
-    /// `Medium` in less memory.
+    /// Quality `Medium` in less memory.
     Compact,
-    /// `Medium`, and traversal that rounds outwards.
+    /// Quality `Medium`, with traversal that rounds outwards.
     Robust,
 }
 
@@ -48,7 +48,7 @@ impl BuildQuality {
     }
 }
 
-/// A built bounding volume hierarchy, ready for queries from any thread.
+/// A bounding volume hierarchy, ready for queries from any thread.
 pub struct Accel {
     scene: sys::RTCScene,
     bounds: Option<(Vec3, Vec3)>,
@@ -63,21 +63,22 @@ unsafe impl Send for Accel {}
 unsafe impl Sync for Accel {}
 
 impl Accel {
-    /// Builds with all threads of `device`, at medium quality. Ids in hits are indices into `meshes` and into
-    /// the mesh's `triangles`. Meshes without triangles keep their index and are never hit. The vertices are
-    /// copied, so that `meshes` may be dropped afterwards.
+    /// Builds with all threads of `device`, at medium quality.
+    ///
+    /// Ids in hits are indices into `meshes` and into a mesh's `triangles`. Meshes without triangles keep their index
+    /// and are never hit. Vertices are copied.
     ///
     /// # Errors
-    /// If a triangle refers to a missing vertex, or has a coordinate for which Embree would silently leave it
-    /// out, or if Embree fails (memory).
+    /// If a triangle refers to a missing vertex, or has a coordinate for which Embree would silently ignore it. Also if
+    /// Embree fails (memory).
     pub fn build(device: &Device, meshes: &[TriangleMesh]) -> Result<Accel, EmbreeError> {
         Accel::build_with(device, meshes, BuildQuality::default())
     }
 
-    /// As [`Accel::build`], with a quality to choose.
+    /// Builds like [`Accel::build`], with a quality.
     ///
     /// # Errors
-    /// As [`Accel::build`].
+    /// Like [`Accel::build`].
     pub fn build_with(
         device: &Device,
         meshes: &[TriangleMesh],
@@ -92,7 +93,7 @@ impl Accel {
         // SAFETY: the device is live.
         let scene = unsafe { sys::rtcNewScene(device.handle()) };
         device.check("making a scene")?;
-        // From here on, dropping releases the scene.
+        // Dropping `accel` releases the scene.
         let widest = device.widest_packets();
         let mut accel = Accel { scene, bounds: None, widest, device: device.clone() };
         let (quality, flags) = quality.to_embree();
@@ -158,15 +159,13 @@ impl Accel {
         (lower.is_finite() && upper.is_finite()).then_some((lower, upper))
     }
 
-    /// The box around all triangles, as corners with the minimum and the maximum coordinates; `None` if there
-    /// is no triangle.
+    /// Returns the minimum and maximum corner of the box around all triangles; `None` without triangles.
     #[inline]
     pub fn bounds(&self) -> Option<(Vec3, Vec3)> {
         self.bounds
     }
 
-    /// Returns the first triangle along the ray. Of several at the same `t`, the choice is unspecified but
-    /// always the same.
+    /// Returns the first triangle along the ray. The choice among several at one `t` is unspecified but deterministic.
     #[inline]
     pub fn closest_hit(&self, ray: &Ray) -> Option<Hit> {
         let ray = ray.to_embree(ALL_GEOMETRY).filter(|_| !self.is_empty())?;
@@ -197,7 +196,7 @@ impl Accel {
         })
     }
 
-    /// True if any triangle of a mesh that occludes intersects the ray's segment.
+    /// True if a triangle of an occluding mesh intersects the ray's segment.
     #[inline]
     pub fn occluded(&self, ray: &Ray) -> bool {
         let Some(mut shadow_ray) = ray.to_embree(OCCLUDING).filter(|_| !self.is_empty()) else {
@@ -205,24 +204,23 @@ impl Accel {
         };
         // SAFETY: as for `rtcIntersect1` above.
         unsafe { sys::rtcOccluded1(self.scene, &mut shadow_ray, std::ptr::null_mut()) };
-        // Embree marks an occluded ray so; a traceable ray never starts that way: t_near <= t_far and -inf
-        // would need t_near to be -inf as well.
+        // Embree marks an occluded ray by `tfar` = -inf. A traceable ray never starts with it, since t_near <= t_far.
         shadow_ray.tfar == f32::NEG_INFINITY
     }
 
-    /// True if there are no triangles. Queries then skip Embree.
+    /// True without triangles. Queries then skip Embree.
     #[inline]
     pub fn is_empty(&self) -> bool {
         self.bounds.is_none()
     }
 
-    /// Width of the widest packets that are traced natively and not by parts.
+    /// Returns the width of the widest packets that are traced natively.
     #[inline]
     pub fn widest(&self) -> Width {
         self.widest
     }
 
-    /// Device that the structure was built with.
+    /// Returns the device of the structure.
     pub fn device(&self) -> &Device {
         &self.device
     }
@@ -239,8 +237,9 @@ impl Drop for Accel {
     }
 }
 
-/// Copies `items`, three 32-bit numbers each, into a new buffer of Embree's, which pads it as required.
-/// Returns false if there is no memory; Embree has then reported it.
+/// Copies `items`, of three 32-bit numbers each, into a new buffer of Embree, which pads it as required.
+///
+/// Returns false if there is no memory. Embree has then reported it.
 fn copy_buffer<T: Copy>(
     geometry: sys::RTCGeometry,
     buffer_type: sys::RTCBufferType,
@@ -261,7 +260,7 @@ fn copy_buffer<T: Copy>(
     true
 }
 
-/// Rejects input that Embree would read out of bounds or leave out silently.
+/// Rejects input that Embree would read out of bounds or silently ignore.
 fn validate(mesh_index: usize, mesh: &TriangleMesh) -> Result<(), EmbreeError> {
     for (what, count) in [("triangles", mesh.triangles.len()), ("vertices", mesh.positions.len())] {
         if u32::try_from(count).is_err() {
@@ -276,7 +275,7 @@ fn validate(mesh_index: usize, mesh: &TriangleMesh) -> Result<(), EmbreeError> {
                 let vertices = mesh.positions.len();
                 return Err(EmbreeError::VertexIndex { mesh: mesh_index, triangle, index, vertices });
             };
-            // Also false for NaN.
+            // This is false for NaN.
             is_valid &= p.abs().cmplt(Vec3::splat(COORDINATE_LIMIT)).all();
         }
         if !is_valid {

@@ -1,7 +1,7 @@
-//! All triangles along a segment, found in one traversal.
+//! All triangles along a segment, in one traversal.
 //!
-//! A filter passed with an occlusion query hands each candidate to the caller and rejects it, so that the traversal
-//! goes on, until the caller has enough.
+//! A filter of an occlusion query passes each candidate to the caller and rejects it. So the traversal goes on until
+//! the caller stops it.
 
 use super::occluder::{CONTEXT, Query, word};
 use super::ray::ALL_GEOMETRY;
@@ -9,8 +9,8 @@ use super::{Accel, Hit, Ray};
 use embree4_sys as sys;
 
 impl Accel {
-    /// Calls `visit` with every triangle that the segment crosses, of all meshes, in no particular order, until it
-    /// returns false; true if it never did.
+    /// Calls `visit` for every triangle that the segment crosses, of all meshes and in no particular order, until it
+    /// returns false; returns true if it never did.
     #[inline]
     pub fn each_crossed<Visit: FnMut(Hit) -> bool>(&self, ray: &Ray, mut visit: Visit) -> bool {
         let Some(mut segment) = ray.to_embree(ALL_GEOMETRY).filter(|_| !self.is_empty()) else { return true };
@@ -23,7 +23,7 @@ impl Accel {
     }
 }
 
-/// Filter of a single ray, which accepts a candidate if `Visit` returns false.
+/// Filter of single rays. It accepts a candidate if `Visit` returns false.
 ///
 /// # Safety
 /// For Embree to call during a query whose context is the head of a `Query<&mut Visit>`.

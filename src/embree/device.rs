@@ -6,12 +6,10 @@ use std::ffi::{CStr, CString, c_char, c_void};
 use std::fmt;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-/// Maximum number of messages kept until they are read; later ones are dropped, for the first tells the
-/// cause.
+/// Maximum number of stored messages. Later ones are dropped, since the first one tells the cause.
 const MESSAGE_CAPACITY: usize = 16;
 
-/// A handle to the library and its build threads. Clones share one device; an [`super::Accel`] keeps its
-/// device alive.
+/// A handle to the library and its build threads. Clones share one device; an [`super::Accel`] owns a clone.
 #[derive(Clone)]
 pub struct Device {
     shared: Arc<Shared>,
@@ -20,7 +18,7 @@ pub struct Device {
 struct Shared {
     handle: sys::RTCDevice,
     version: Version,
-    // Boxed, since Embree keeps its address.
+    // The log is boxed, since Embree keeps its address.
     errors: Box<ErrorLog>,
 }
 
@@ -31,16 +29,16 @@ unsafe impl Send for Shared {}
 unsafe impl Sync for Shared {}
 
 impl Device {
-    /// Creates a device that builds with `threads` threads; 0 stands for one per hardware thread. Queries run
-    /// on the caller's threads and are not limited by it.
+    /// Creates a device with `threads` build threads; 0 stands for one per hardware thread. Queries run on the caller's
+    /// threads.
     ///
     /// # Errors
-    /// If Embree returns no device, or is a version or build that the bindings do not describe.
+    /// If Embree returns no device, or its version or build is not supported by the bindings.
     pub fn new(threads: usize) -> Result<Device, EmbreeError> {
         Device::with_config(&format!("threads={threads}"))
     }
 
-    /// As [`Device::new`], with a configuration string of `rtcNewDevice`, by which tests choose an ISA.
+    /// Creates a device with a configuration string of `rtcNewDevice`. Tests choose an ISA with it.
     pub(super) fn with_config(config: &str) -> Result<Device, EmbreeError> {
         let config = CString::new(config).unwrap_or_default();
         // SAFETY: the string is NUL-terminated and outlives the call.
@@ -78,13 +76,13 @@ impl Device {
         Ok(Device { shared: Arc::new(device) })
     }
 
-    /// Version of the library that was loaded.
+    /// Returns the version of the loaded library.
     pub fn version(&self) -> Version {
         self.shared.version
     }
 
-    /// Width of the widest packets that run natively: sixteen by AVX-512, eight by AVX2, four otherwise. Embree takes
-    /// wider ones apart into single rays.
+    /// Returns the width of the widest native packets: sixteen with AVX-512, eight with AVX2, else four. Embree splits
+    /// wider ones into single rays.
     pub fn widest_packets(&self) -> Width {
         let is_native = |which| {
             // SAFETY: the handle is a live device.
@@ -99,7 +97,7 @@ impl Device {
         }
     }
 
-    /// Returns the first error reported since the last call, if any; discards the rest.
+    /// Returns the first error since the last call, if any, and discards the others.
     ///
     /// # Errors
     /// The error that Embree reported; `during` names the activity.
@@ -134,7 +132,7 @@ impl Drop for Shared {
     }
 }
 
-/// Errors passed to the callback, in order.
+/// Errors that the callback received, in order.
 #[derive(Default)]
 struct ErrorLog(Mutex<Vec<(sys::RTCError, String)>>);
 
@@ -144,7 +142,7 @@ impl ErrorLog {
     }
 }
 
-/// Error callback, called by Embree from any of its threads.
+/// Error callback. Embree calls it from any thread.
 unsafe extern "C" fn record_error(log: *mut c_void, code: sys::RTCError, message: *const c_char) {
     // SAFETY: `log` is the registered pointer, to a live `ErrorLog` that is only ever shared.
     let log = unsafe { &*log.cast::<ErrorLog>() };
@@ -155,7 +153,7 @@ unsafe extern "C" fn record_error(log: *mut c_void, code: sys::RTCError, message
     }
 }
 
-/// Embree's name of an error code.
+/// Returns Embree's name of an error code.
 fn code_name(code: sys::RTCError) -> String {
     // SAFETY: takes any value and returns a string with static lifetime.
     unsafe { text(sys::rtcGetErrorString(code)) }

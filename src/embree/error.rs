@@ -1,8 +1,8 @@
-//! Errors of building and querying with Embree, each with its remedy.
+//! Errors of Embree, each with its remedy.
 
 use super::Version;
 
-/// Reason that there is no device or no acceleration structure.
+/// Reason why there is no device or no acceleration structure.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum EmbreeError {
@@ -14,7 +14,7 @@ pub enum EmbreeError {
         /// Embree's explanation.
         message: String,
     },
-    /// The library that was loaded is of a version that the bindings do not describe.
+    /// The loaded library has a version that the bindings do not support.
     #[error(
         "Embree {found} was loaded, but 4.3 or later below 5 is needed: run `make setup` and build again, \
          or point EMBREE_DIR at a fitting one"
@@ -23,7 +23,7 @@ pub enum EmbreeError {
         /// Version that the library reports.
         found: Version,
     },
-    /// The library was built without a feature that is needed here.
+    /// The library lacks a required feature.
     #[error("this Embree was built without {feature}: run `make setup` without EMBREE_DIR and build again")]
     Feature {
         /// CMake option that is off.
@@ -32,14 +32,14 @@ pub enum EmbreeError {
     /// Embree reported an error during a call.
     #[error("Embree failed while {during}: {code}: {message}")]
     Call {
-        /// Activity during which it failed.
+        /// Activity that failed.
         during: &'static str,
         /// Embree's name of the error code.
         code: String,
         /// Embree's explanation.
         message: String,
     },
-    /// Triangles that Embree would silently leave out.
+    /// Triangles that Embree would silently ignore.
     #[error(
         "mesh {mesh}: {count} triangles have a coordinate that is not finite or beyond ±1.8e18 \
          (the first is triangle {first}): sanitise the scene before building"
@@ -49,7 +49,7 @@ pub enum EmbreeError {
         mesh: usize,
         /// Index of the first such triangle.
         first: usize,
-        /// Number of such triangles in this mesh.
+        /// Number of such triangles in the mesh.
         count: usize,
     },
     /// A triangle refers to a vertex that does not exist.
@@ -67,9 +67,9 @@ pub enum EmbreeError {
     /// More meshes, vertices or triangles than 32-bit ids can distinguish.
     #[error("{count} {what} are more than 32-bit ids can tell apart: split the scene")]
     TooMany {
-        /// Name of the excessive objects.
+        /// Kind of the objects.
         what: &'static str,
-        /// Their number.
+        /// Number of the objects.
         count: usize,
     },
 }

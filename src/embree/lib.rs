@@ -1,20 +1,20 @@
-//! Safe interface to Embree 4: device, triangle scene, closest-hit and occlusion queries for one ray and for
-//! packets. With `vendor-bindings/`, the only place with unsafe code.
+//! Safe interface to Embree 4: device, triangle scene, closest-hit and occlusion queries for single rays and packets.
 //!
-//! A [`Device`] is created once, an [`Accel`] once per scene; queries go to the `Accel` from any number of
-//! threads. Guarantees of the queries, and their limits:
+//! Only this crate and `vendor-bindings/` contain unsafe code.
 //!
-//! * Every answer is for the segment `t_near < t <= t_far` of the ray, half-open up to rounding, and is the
-//!   same for any number of threads. It is *not* the same bit for bit between processors (Embree has AVX-512,
-//!   AVX2 and SSE kernels), nor need a packet agree with single rays where a ray passes within rounding of an
-//!   edge.
-//! * A hit next to the origin is a hit: the caller has to keep rays off their own surface.
-//! * A ray with a NaN or infinite origin or direction, a zero direction, or `t_near > t_far` or either NaN
-//!   hits nothing. `t_far` may be infinite.
-//! * Both sides of a triangle are hit; triangles of zero area are not.
-//! * The floating-point control word (MXCSR) of the calling thread is left as it is.
+//! A [`Device`] is created once, an [`Accel`] once per scene. Any number of threads may query the `Accel`. Guarantees
+//! of the queries, and their limits:
 //!
-//! Units: `t` counts in lengths of the ray's direction, which need not be a unit vector.
+//! * Every answer is for the segment `t_near < t <= t_far` of the ray, half-open up to rounding. It is the same for any
+//!   number of threads. It is *not* bit-identical between processors (Embree has AVX-512, AVX2 and SSE kernels). A
+//!   packet may differ from single rays for rays within rounding of an edge.
+//! * Hits next to the origin count. The caller has to keep rays off their own surface.
+//! * A ray hits nothing if its origin or direction is NaN or infinite, its direction is zero, `t_near > t_far`, or
+//!   either is NaN. `t_far` may be infinite.
+//! * Both sides of a triangle are hit. Triangles of zero area are not.
+//! * The floating-point control word (MXCSR) of the calling thread stays unchanged.
+//!
+//! Units: `t` is in lengths of the ray's direction, which need not be a unit vector.
 
 #![allow(unsafe_code)]
 

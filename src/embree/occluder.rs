@@ -1,7 +1,10 @@
 //! Occlusion queries that also return the occluding triangle and its distance.
 //!
-//! `rtcOccluded` reports neither, so a filter passed with the query records each candidate, all of which it
-//! accepts, behind Embree's query context. It costs a few per cent against the plain query.
+//! `rtcOccluded` reports neither. So a filter of the query accepts and records each candidate, behind Embree's query
+//! context. The cost is a few per cent.
+//!
+//! The occluder is the first triangle that the traversal finds, not the closest. It may differ between a packet and a
+//! single ray, and with the packet's other lanes.
 //!
 //! The occluder is the first that the traversal found, not the closest: it may differ between a packet and a
 //! single ray, and with the packet's other lanes.
@@ -21,7 +24,7 @@ pub struct TriangleId {
 }
 
 impl TriangleId {
-    /// No triangle.
+    /// Id of no triangle.
     pub const NONE: TriangleId = TriangleId { geometry: u32::MAX, primitive: u32::MAX };
 }
 
@@ -37,14 +40,14 @@ pub struct Occluder {
 }
 
 impl Occluder {
-    /// Identifier of the triangle.
+    /// Returns the identifier of the triangle.
     #[inline]
     pub fn id(&self) -> TriangleId {
         TriangleId { geometry: self.geometry, primitive: self.primitive }
     }
 }
 
-/// The occluders of sixteen rays. Lanes that are not occluded are left unchanged.
+/// Occluders of sixteen rays. Lanes without occlusion stay unchanged.
 #[derive(Clone, Debug, Default)]
 #[repr(C, align(64))]
 pub struct Occluders16 {
@@ -56,16 +59,16 @@ pub struct Occluders16 {
     pub primitive: [u32; 16],
 }
 
-/// Context of a query, which the filters find behind `RTCFilterFunctionNArguments::context`.
+/// Context of a query. Filters find it in `RTCFilterFunctionNArguments::context`.
 #[repr(C)]
 pub(super) struct Query<Found> {
     pub context: sys::RTCRayQueryContext,
-    /// Record of the filters.
+    /// Data of the filters.
     pub found: Found,
 }
 
 impl<Found> Query<Found> {
-    /// Returns the query's arguments, with `filter` to be called for every candidate. They point into `self`.
+    /// Returns the query's arguments, with `filter` for every candidate. They point into `self`.
     #[inline]
     pub fn arguments(
         &mut self,
@@ -87,7 +90,7 @@ pub(super) const CONTEXT: sys::RTCRayQueryContext = sys::RTCRayQueryContext {
     instPrimID: [sys::RTC_INVALID_GEOMETRY_ID],
 };
 
-/// Word offsets, times the packet's size, of the fields that the filters read from `RTCRayN` and `RTCHitN`.
+/// Word offsets, times the packet's size, of the fields of `RTCRayN` and `RTCHitN` that filters read.
 pub(super) mod word {
     pub const RAY_T_FAR: usize = 8;
     pub const RAY_ID: usize = 10;
@@ -98,7 +101,7 @@ pub(super) mod word {
 }
 
 impl Accel {
-    /// As [`Accel::occluded`], but returns the occluder.
+    /// Returns the occluder of a ray; see [`Accel::occluded`].
     #[inline]
     pub fn occluder(&self, ray: &Ray) -> Option<Occluder> {
         let mut shadow_ray = ray.to_embree(OCCLUDING).filter(|_| !self.is_empty())?;
@@ -111,13 +114,13 @@ impl Accel {
         (shadow_ray.tfar == f32::NEG_INFINITY).then_some(query.found)
     }
 
-    /// As [`Accel::occluded16`], but also writes the occluders to the returned lanes of `found`.
+    /// Returns the occluded lanes like [`Accel::occluded16`], and writes their occluders to `found`.
     #[inline]
     pub fn occluders16(&self, rays: &Rays16, valid: u16, coherent: bool, found: &mut Occluders16) -> u16 {
         self.occluders_by(self.widest(), rays, valid, coherent, found)
     }
 
-    /// [`Accel::occluders16`] by queries of `width` rays, four at least.
+    /// Does [`Accel::occluders16`] with queries of `width` rays, at least four.
     #[inline]
     pub(super) fn occluders_by(
         &self,
@@ -134,7 +137,7 @@ impl Accel {
     }
 }
 
-/// Filter of a single ray.
+/// Filter of single rays.
 ///
 /// # Safety
 /// For Embree to call during a query whose context is the head of a `Query<Occluder>`.
@@ -153,8 +156,10 @@ unsafe extern "C" fn record_occluder(arguments: *const sys::RTCFilterFunctionNAr
     }
 }
 
-/// Filter of a packet of sixteen. It processes all lanes and blends, so that it compiles to vector
-/// instructions; a loop over the valid lanes costs several times as much.
+/// Filter of a packet of sixteen.
+///
+/// The filter processes and blends all lanes, so that it compiles to vector instructions. A loop over the valid lanes
+/// costs several times as much.
 ///
 /// # Safety
 /// For Embree to call during a query whose context is the head of a `Query<&mut Occluders16>` and whose rays
@@ -198,8 +203,7 @@ fn blend(mask: u32, new: u32, old: u32) -> u32 {
     (mask & new) | (!mask & old)
 }
 
-/// The same filter where Embree has no sixteen-wide kernels and the rays of the packet are traced in smaller
-/// packets, or one by one: the lane is then the ray's id.
+/// Filter of parts of a packet, for processors without sixteen-wide kernels. The ray's id is its lane.
 ///
 /// # Safety
 /// As for [`record_occluders`], from which it is called.

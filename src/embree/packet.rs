@@ -1,13 +1,13 @@
-//! Packets of sixteen rays and of their hits.
+//! Packets of sixteen rays and their hits.
 
 use super::{Hit, Ray};
 use base::math::Vec3x16;
 use embree4_sys as sys;
 use glam::Vec3;
 
-/// Sixteen rays, a lane each, as a structure of arrays.
+/// Sixteen rays, one per lane, as a structure of arrays.
 ///
-/// Lanes that were never set are unusable rays that hit nothing.
+/// Lanes that were never set hit nothing.
 #[derive(Clone, Debug)]
 #[repr(C, align(64))]
 pub struct Rays16 {
@@ -61,7 +61,7 @@ impl Rays16 {
         self.t_far[lane] = ray.t_far;
     }
 
-    /// The ray in a lane.
+    /// Returns the ray in a lane.
     #[inline(always)]
     pub fn get(&self, lane: usize) -> Ray {
         Ray {
@@ -72,24 +72,24 @@ impl Rays16 {
         }
     }
 
-    /// Origins of all lanes.
+    /// Returns the origins of all lanes.
     #[inline]
     pub fn origins(&self) -> Vec3x16 {
         Vec3x16 { x: self.origin_x, y: self.origin_y, z: self.origin_z }
     }
 
-    /// Directions of all lanes.
+    /// Returns the directions of all lanes.
     #[inline]
     pub fn directions(&self) -> Vec3x16 {
         Vec3x16 { x: self.direction_x, y: self.direction_y, z: self.direction_z }
     }
 
-    /// Returns the lanes of `valid` as Embree's mask, without those whose segment is empty or invalid.
+    /// Returns the lanes of `valid` as Embree's mask, without lanes whose segment is empty or invalid.
     #[inline]
     pub(super) fn lanes(&self, valid: u16) -> LaneMask {
         let mut lanes = LaneMask([0; 16]);
         for i in 0..16 {
-            // Zero for finite numbers, NaN for all others.
+            // This is zero for finite numbers, and NaN for others.
             let zero = 0.0 * self.origin_x[i]
                 + 0.0 * self.origin_y[i]
                 + 0.0 * self.origin_z[i]
@@ -106,7 +106,7 @@ impl Rays16 {
     }
 }
 
-/// Ids of the rays, their lanes, which a filter needs where Embree splits the packet into single rays.
+/// Ids of the rays: their lanes. Filters need them if Embree splits the packet.
 pub(super) const LANE_IDS: [u32; 16] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15];
 
 /// Embree's mask of lanes.
@@ -119,7 +119,7 @@ impl LaneMask {
         self.0 != [0; 16]
     }
 
-    /// Bit mask of the lanes that are valid and for which `f` holds.
+    /// Returns the bit mask of the valid lanes that satisfy `f`.
     #[inline(always)]
     pub(super) fn mask_where(&self, f: impl Fn(usize) -> bool) -> u16 {
         let mut bits = [0; 16];
@@ -130,15 +130,15 @@ impl LaneMask {
     }
 }
 
-/// Hits of sixteen rays; see [`super::Hit`] for the members. Lanes without a hit are left unchanged.
+/// Hits of sixteen rays; see [`super::Hit`] for the members. Lanes without a hit stay unchanged.
 #[derive(Clone, Debug, Default)]
 #[repr(C, align(64))]
 pub struct Hits16 {
     /// Ray parameters.
     pub t: [f32; 16],
-    /// Barycentric coordinates of the triangles' corners 1.
+    /// Barycentric coordinates of corner 1 of the triangles.
     pub u: [f32; 16],
-    /// Barycentric coordinates of the triangles' corners 2.
+    /// Barycentric coordinates of corner 2 of the triangles.
     pub v: [f32; 16],
     /// Indices of the meshes.
     pub geometry: [u32; 16],
@@ -147,7 +147,7 @@ pub struct Hits16 {
 }
 
 impl Hits16 {
-    /// The hit in a lane.
+    /// Returns the hit in a lane.
     #[inline(always)]
     pub fn get(&self, lane: usize) -> Hit {
         Hit {

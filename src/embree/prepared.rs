@@ -1,4 +1,4 @@
-//! A minimal loop over rays of each width, for benchmarks: the baseline for a renderer's queries.
+//! A minimal loop over rays of each width: the baseline for benchmarks of the renderer's queries.
 //!
 //! Rays are stored in the library's layout, copied (a query writes to them) and traced, with no other work.
 
@@ -19,8 +19,8 @@ enum Form {
 }
 
 impl PreparedRays {
-    /// Takes the rays in the given lanes of `packets`, in their order; narrower packets are cut from them,
-    /// and those without a ray to be traced left out.
+    /// Stores the rays in the given lanes of `packets`, in order. Narrower packets are cut from them. Packets without
+    /// traceable rays are left out.
     pub fn new<'a>(packets: impl IntoIterator<Item = (&'a Rays16, u16)>, width: Width) -> PreparedRays {
         let packets = packets.into_iter();
         PreparedRays(match width {
@@ -38,7 +38,7 @@ impl PreparedRays {
         })
     }
 
-    /// Number of queries.
+    /// Returns the number of queries.
     pub fn queries(&self) -> usize {
         match &self.0 {
             Form::One(rays) => rays.len(),
@@ -48,7 +48,7 @@ impl PreparedRays {
         }
     }
 
-    /// Traces them all, and returns the number of occluded rays.
+    /// Traces all rays; returns the number of occluded rays.
     pub fn occluded(&self, accel: &Accel, coherent: bool) -> u64 {
         if accel.is_empty() {
             return 0;
@@ -73,7 +73,7 @@ impl PreparedRays {
     }
 }
 
-/// Cuts packets of sixteen into ones of `width`, each with the mask of its lanes.
+/// Cuts packets of sixteen into packets of `width`, each with the mask of its lanes.
 fn prepare<'a, P: EmbreePacket>(
     packets: impl Iterator<Item = (&'a Rays16, u16)>,
     width: usize,

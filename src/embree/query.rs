@@ -1,9 +1,8 @@
 //! Queries of packets.
 //!
-//! The speed of a packet depends on the rays that share it. With the `coherent` hint, rays from neighbouring
-//! points towards one light run two to three times as fast as single rays; unrelated rays run at half the
-//! speed. Coherent packets should start at the receivers: a packet that starts at the light and fans out lost
-//! some 1e-4 of its hits.
+//! The speed of a packet depends on its rays. With the `coherent` hint, rays from neighbouring points towards one light
+//! are faster than single rays; unrelated rays are slower. Coherent packets should start at the receivers. A packet
+//! that fans out from the light loses about 1e-4 of its hits.
 
 use super::packet::LANE_IDS;
 use super::ray::{ALL_GEOMETRY, OCCLUDING};
@@ -11,13 +10,13 @@ use super::{Accel, Hits16, Rays16, Width};
 use embree4_sys as sys;
 use std::mem::MaybeUninit;
 
-/// Query flags for a coherence hint.
+/// Returns the query flags of a coherence hint.
 #[inline]
 pub(super) fn query_flags(coherent: bool) -> sys::RTCRayQueryFlags {
     if coherent { sys::RTC_RAY_QUERY_FLAG_COHERENT } else { sys::RTC_RAY_QUERY_FLAG_INCOHERENT }
 }
 
-/// Arguments of an occlusion query without a filter.
+/// Returns the arguments of an occlusion query without a filter.
 #[inline]
 pub(super) fn occluded_arguments(coherent: bool) -> sys::RTCOccludedArguments {
     sys::RTCOccludedArguments {
@@ -29,26 +28,26 @@ pub(super) fn occluded_arguments(coherent: bool) -> sys::RTCOccludedArguments {
     }
 }
 
-/// A packet of Embree's own layout.
+/// A packet in Embree's own layout.
 pub(super) trait EmbreePacket: Copy {
-    /// Takes lanes `first..first + width` of sixteen, with a mask of the meshes that they meet.
+    /// Returns lanes `first..first + width` of sixteen as a packet; `mask` selects the meshes to query.
     fn of(rays: &Rays16, first: usize, mask: u32) -> Self;
-    /// Traces the lanes of the mask `lanes`, and returns those found occluded as bits from 0 on.
+    /// Traces the lanes of the mask `lanes`; returns the occluded ones as bits from 0 on.
     ///
     /// # Safety
-    /// The scene is committed, and `lanes` is as long as the packet is wide and as aligned as the packet. Filters in
-    /// the arguments fit their context.
+    /// The scene must be committed. `lanes` must be as long as the packet is wide, and as aligned as the packet.
+    /// Filters in the arguments must fit their context, which must outlive the call.
     unsafe fn occluded(
         self,
         lanes: *const i32,
         scene: sys::RTCScene,
         arguments: &mut sys::RTCOccludedArguments,
     ) -> u16;
-    /// Traces the lanes of the mask `lanes`, and writes hits to those of `hits` from `first` on; returns the lanes that
-    /// hit as bits from 0 on.
+    /// Traces the lanes of the mask `lanes`, and writes hits to `hits` from `first` on; returns the lanes with hits as
+    /// bits from 0 on.
     ///
     /// # Safety
-    /// As for [`EmbreePacket::occluded`].
+    /// See [`EmbreePacket::occluded`].
     unsafe fn closest_hit(
         self,
         lanes: *const i32,
@@ -64,7 +63,7 @@ macro_rules! packet {
         impl EmbreePacket for sys::$packet {
             #[inline(always)]
             fn of(rays: &Rays16, first: usize, mask: u32) -> Self {
-                // Copied as whole vectors, as Embree reads them.
+                // Whole vectors are copied, as Embree reads them.
                 #[inline(always)]
                 fn part<T: Copy + Default>(row: &[T; 16], first: usize) -> [T; $width] {
                     let mut part = [T::default(); $width];
@@ -95,8 +94,8 @@ macro_rules! packet {
                 scene: sys::RTCScene,
                 arguments: &mut sys::RTCOccludedArguments,
             ) -> u16 {
-                // Room for hits: where Embree has no kernels of this width, it copies single rays out of the packet and
-                // back as if hits followed it.
+                // The packet is followed by room for hits. Without kernels of this width, Embree copies single rays out
+                // of the packet and back as if hits followed it.
                 let mut both = MaybeUninit::<sys::$both>::uninit();
                 let mut bits = [0u32; $width];
                 // SAFETY: by contract. The packet is written before it is read, has its type's alignment, which Embree
@@ -163,9 +162,10 @@ packet!(RTCRay8, RTCHit8, RTCRayHit8, 8, rtcOccluded8, rtcIntersect8);
 packet!(RTCRay16, RTCHit16, RTCRayHit16, 16, rtcOccluded16, rtcIntersect16);
 
 impl Accel {
-    /// [`Accel::closest_hit`] for the lanes in `valid`. Returns the lanes that hit, and writes those of
-    /// `hits`. `coherent` is a hint that origins and directions are similar: it may change the last bits and
-    /// the speed, not the meaning.
+    /// Traces the lanes in `valid` like [`Accel::closest_hit`]; returns the lanes with hits, and writes these to
+    /// `hits`.
+    ///
+    /// `coherent` is a hint that origins and directions are similar. It may change the last bits and the speed.
     #[inline]
     pub fn closest_hit16(&self, rays: &Rays16, valid: u16, coherent: bool, hits: &mut Hits16) -> u16 {
         match self.widest() {
@@ -211,14 +211,14 @@ impl Accel {
         found
     }
 
-    /// [`Accel::occluded`] for the lanes in `valid`. Returns those that are occluded. For `coherent`
-    /// see [`Accel::closest_hit16`].
+    /// Returns the lanes in `valid` that are occluded; see [`Accel::occluded`], and [`Accel::closest_hit16`] for
+    /// `coherent`.
     #[inline]
     pub fn occluded16(&self, rays: &Rays16, valid: u16, coherent: bool) -> u16 {
         self.occluded_by(self.widest(), rays, valid, coherent)
     }
 
-    /// [`Accel::occluded16`] by queries of `width` rays.
+    /// Does [`Accel::occluded16`] with queries of `width` rays.
     #[inline]
     pub fn occluded_by(&self, width: Width, rays: &Rays16, valid: u16, coherent: bool) -> u16 {
         match width {
@@ -230,10 +230,10 @@ impl Accel {
         }
     }
 
-    /// The lanes that queries of `width` rays, four at least, find occluded.
+    /// Returns the lanes that queries of `width` rays, at least four, find occluded.
     ///
     /// # Safety
-    /// Filters in the arguments fit their context, which outlives the call.
+    /// Filters in the arguments must fit their context, which must outlive the call.
     #[inline]
     pub(super) unsafe fn occluded_with(
         &self,
@@ -252,10 +252,10 @@ impl Accel {
         }
     }
 
-    /// The same for packets of `width` rays.
+    /// Returns the occluded lanes of queries of packets of type `P`.
     ///
     /// # Safety
-    /// As for [`Accel::occluded_with`].
+    /// See [`Accel::occluded_with`].
     #[inline]
     unsafe fn occluded_in<P: EmbreePacket>(
         &self,
@@ -279,7 +279,7 @@ impl Accel {
                 occluded |= found << first;
             }
         }
-        // Lanes that were not traced keep a `t_far` that may be minus infinity.
+        // Lanes that were not traced keep a `t_far` that may be -inf.
         occluded & lanes.mask_where(|_| true)
     }
 }

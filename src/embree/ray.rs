@@ -3,7 +3,7 @@
 use embree4_sys as sys;
 use glam::{Vec3, Vec4};
 
-/// Ray mask that includes all geometry, and mask of geometry that occludes.
+/// Ray mask that includes all geometry, and the mask of occluding geometry.
 pub(super) const ALL_GEOMETRY: u32 = u32::MAX;
 
 /// Mask of geometry that does not occlude.
@@ -26,29 +26,28 @@ pub struct Ray {
 }
 
 impl Ray {
-    /// The half-line from `origin`.
+    /// Returns the half-line from `origin`.
     #[inline]
     pub fn new(origin: Vec3, direction: Vec3) -> Ray {
         Ray { origin, t_near: 0.0, direction, t_far: f32::INFINITY }
     }
 
-    /// The segment between two points: `t` is 0 at `from` and 1 at `to`.
+    /// Returns the segment between two points: `t` is 0 at `from` and 1 at `to`.
     #[inline]
     pub fn between(from: Vec3, to: Vec3) -> Ray {
         Ray { origin: from, t_near: 0.0, direction: to - from, t_far: 1.0 }
     }
 
-    /// The point at `t`.
+    /// Returns the point at `t`.
     #[inline]
     pub fn at(&self, t: f32) -> Vec3 {
         self.origin + t * self.direction
     }
 
-    /// Converts to Embree's layout, for geometry of `mask`; `None` if the segment is empty or invalid: then it hits
-    /// nothing and Embree is not called.
+    /// Converts to Embree's layout, for geometry of `mask`; `None` if the segment is empty or invalid and so hits
+    /// nothing.
     ///
-    /// Written as whole vectors, as Embree reads it: after writes of single words the read would stall until
-    /// they reach the cache.
+    /// Whole vectors are written, as Embree reads them. After writes of single words the read would stall.
     #[inline(always)]
     pub(super) fn to_embree(self, mask: u32) -> Option<sys::RTCRay> {
         let origin = self.origin.extend(self.t_near);

@@ -5,16 +5,16 @@ use std::fmt;
 /// A version of Embree; compares in release order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Version {
-    /// First number: the ABI.
+    /// Major version.
     pub major: u32,
-    /// Second number.
+    /// Minor version.
     pub minor: u32,
-    /// Third number.
+    /// Patch level.
     pub patch: u32,
 }
 
 impl Version {
-    /// True if the bindings describe this version: 4.2 has a smaller hit, 5 is another interface.
+    /// True if the bindings support this version. Hits are smaller in 4.2, and 5 has another interface.
     pub(super) fn is_supported(self) -> bool {
         self.major == 4 && self.minor >= 3
     }

@@ -1,23 +1,23 @@
 //! Widths of Embree's packets.
 
-/// Number of rays that a query takes.
+/// Number of rays per query.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Width {
-    /// One: `rtcOccluded1`.
+    /// One ray: `rtcOccluded1`.
     One,
-    /// `rtcOccluded4`.
+    /// Four rays: `rtcOccluded4`.
     Four,
-    /// `rtcOccluded8`.
+    /// Eight rays: `rtcOccluded8`.
     Eight,
-    /// `rtcOccluded16`.
+    /// Sixteen rays: `rtcOccluded16`.
     Sixteen,
 }
 
 impl Width {
-    /// All widths, the narrowest first.
+    /// All widths, in ascending order.
     pub const ALL: [Width; 4] = [Width::One, Width::Four, Width::Eight, Width::Sixteen];
 
-    /// Number of rays.
+    /// Returns the number of rays.
     pub fn rays(self) -> usize {
         match self {
             Width::One => 1,

@@ -1,11 +1,11 @@
 //! Optical constants by name: indices of refraction and conductors.
 //!
-//! The conductors' values are those that Mitsuba 3.9.1 computes from its measured spectra in its `rgb`
-//! variants (colour-matched η and k, out-of-gamut parts clamped to 0), read back from the running program.
+//! Source: Mitsuba 3.9.1, `rgb` variants. They compute η and k of conductors by colour matching from measured spectra,
+//! and clamp negative channels to 0.
 
 use base::math::Rgb;
 
-/// Returns the index of refraction of a medium, by Mitsuba's name for it.
+/// Returns the index of refraction of a medium by the name that Mitsuba uses.
 pub(crate) fn index_of_refraction(name: &str) -> Option<f64> {
     Some(match name.to_ascii_lowercase().as_str() {
         "vacuum" => 1.0,
@@ -34,7 +34,7 @@ pub(crate) fn index_of_refraction(name: &str) -> Option<f64> {
     })
 }
 
-/// Returns η and k of a conductor, by Mitsuba's name for it (with or without `_palik`).
+/// Returns η and k of a conductor by the name that Mitsuba uses, with or without `_palik`.
 pub fn conductor(name: &str) -> Option<(Rgb, Rgb)> {
     let find = |name: &str| CONDUCTORS.iter().find(|c| c.0 == name);
     let (_, eta, k) = find(name).or_else(|| find(name.strip_suffix("_palik")?))?;

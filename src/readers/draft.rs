@@ -1,19 +1,15 @@
-//! A scene as described by its files: world coordinates in f64, not yet sanitised or recentred.
+//! A scene as its files describe it: world coordinates in f64, not yet repaired or recentred.
 //!
-//! Every reader ends in a [`Draft`]; [`super::sanitize`] and [`super::recentre`] make the
-//! [`Scene`](super::Scene) of it.
+//! [`crate::finish`] turns a [`Draft`] into a [`Scene`].
 
-use crate::Place;
+use crate::Location;
 use glam::{DVec3, Vec2, Vec3};
-use scene::{
-    DeltaLight, DistantDisc, Emission, Environment, Material, MaterialId, PixelFilter, Projection, Texture,
-};
-use std::path::PathBuf;
+use scene::{DeltaLight, Emission, MaterialId, PixelFilter, Projection, Scene};
 
-/// Film of scenes that name no size, in pixels.
+/// Width and height in pixels of films without a size.
 pub(crate) const DEFAULT_RESOLUTION: [u32; 2] = [960, 540];
 
-/// A camera in world coordinates; fields as in [`super::Camera`].
+/// A camera in world coordinates; for the fields see [`scene::Camera`].
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct DraftCamera {
     pub origin: DVec3,
@@ -27,7 +23,7 @@ pub(crate) struct DraftCamera {
     pub filter: PixelFilter,
 }
 
-/// At the origin, looking along -z with y up.
+/// The camera at the origin, looking along -z, with y up.
 impl Default for DraftCamera {
     fn default() -> DraftCamera {
         DraftCamera {
@@ -44,15 +40,15 @@ impl Default for DraftCamera {
     }
 }
 
-/// Cameras, and the size of their film.
+/// Cameras, and their film.
 #[derive(Clone, Debug)]
 pub(crate) struct Shot {
     pub camera: DraftCamera,
-    /// True if the camera is to be moved so that it sees all surfaces.
+    /// True if the camera has to be moved until it sees all surfaces.
     pub fits: bool,
     pub path: Vec<DraftCamera>,
     pub resolution: [u32; 2],
-    /// Offset and size of the only part of the film that is wanted.
+    /// Offset and size of the part of the film to render, if not all of it.
     pub crop: Option<[[u32; 2]; 2]>,
 }
 
@@ -61,9 +57,9 @@ pub(crate) struct Shot {
 pub(crate) struct DraftMesh {
     pub name: String,
     pub positions: Vec<DVec3>,
-    /// Normals by vertex, or empty; may hold zeros or NaN until sanitised.
+    /// Normal of each vertex, or empty; may hold zeros or NaN until repaired.
     pub normals: Vec<Vec3>,
-    /// Texture coordinates by vertex, v up, or empty.
+    /// Texture coordinates of each vertex, v upwards, or empty.
     pub uvs: Vec<Vec2>,
     pub triangles: Vec<[u32; 3]>,
     pub material: MaterialId,
@@ -72,21 +68,22 @@ pub(crate) struct DraftMesh {
     pub turned: usize,
 }
 
-/// A scene in world coordinates.
+/// A scene whose positions are still in world coordinates.
 #[derive(Clone, Debug)]
 pub struct Draft {
-    pub name: String,
-    pub sources: Vec<PathBuf>,
+    /// Parts that have no position; `meshes` and `lights` in it are empty until recentred.
+    pub scene: Scene,
     pub shot: Shot,
-    pub max_depth: Option<u32>,
-    pub hides_emitters: bool,
     pub meshes: Vec<DraftMesh>,
-    pub materials: Vec<Material>,
-    /// Place in the files where each material is described.
-    pub material_places: Vec<Place>,
-    pub textures: Vec<Texture>,
-    /// Lights with their world positions, which replace the positions inside.
+    /// Lights and their world positions; the positions inside the lights are not used.
     pub lights: Vec<(DeltaLight, DVec3)>,
-    pub environment: Option<Environment>,
-    pub discs: Vec<DistantDisc>,
+    /// Location of each material's description.
+    pub material_places: Vec<Location>,
+}
+
+impl Draft {
+    /// Returns the location of the description's main file.
+    pub fn main_file(&self) -> Location {
+        Location { path: self.scene.sources.first().cloned().unwrap_or_default(), line: None }
+    }
 }

@@ -1,27 +1,29 @@
-//! Errors in scenes, and warnings about parts that are not modelled: both name the file and the line.
+//! Errors of reading scenes, and warnings about features that are not modelled.
+//!
+//! Both name the file and, if possible, the line.
 
 use std::collections::BTreeSet;
 use std::fmt;
 use std::path::{Path, PathBuf};
 
-/// A file, and the line, if available.
+/// A file, and a line of it if known.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Place {
+pub struct Location {
     /// The file.
     pub path: PathBuf,
     /// Line, counted from 1.
     pub line: Option<u32>,
 }
 
-impl Place {
-    /// Returns the place of the file as a whole.
-    pub fn file(path: &Path) -> Place {
-        Place { path: path.to_owned(), line: None }
+impl Location {
+    /// Returns the location of a file as a whole.
+    pub fn file(path: &Path) -> Location {
+        Location { path: path.to_owned(), line: None }
     }
 
-    /// Returns the place of line `line` (from 1) of the file.
-    pub fn line(path: &Path, line: u32) -> Place {
-        Place { path: path.to_owned(), line: Some(line) }
+    /// Returns the location of a line, counted from 1.
+    pub fn line(path: &Path, line: u32) -> Location {
+        Location { path: path.to_owned(), line: Some(line) }
     }
 
     /// Returns the error of a wrong value here.
@@ -29,12 +31,12 @@ impl Place {
         SceneError::Value { place: self.clone(), what: what.into(), remedy: remedy.into() }
     }
 
-    /// Returns the error of a name used here that is not defined.
+    /// Returns the error of a name that is used here and not defined.
     pub fn undefined(&self, kind: &'static str, name: &str) -> SceneError {
         SceneError::Reference { place: self.clone(), kind, name: name.to_owned() }
     }
 
-    /// Returns the error of a camera asked for that is not in the scene.
+    /// Returns the error of a requested camera that the scene lacks.
     pub(crate) fn no_camera(&self, name: &str, remedy: impl Into<String>) -> SceneError {
         SceneError::Camera { place: self.clone(), name: name.to_owned(), remedy: remedy.into() }
     }
@@ -45,7 +47,7 @@ impl Place {
     }
 }
 
-impl fmt::Display for Place {
+impl fmt::Display for Location {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         match self.line {
             Some(line) => write!(f, "{}:{line}", self.path.display()),
@@ -56,20 +58,20 @@ impl fmt::Display for Place {
 
 /// Severity of a warning.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Level {
-    /// The expected picture is the one described, to within filtering or tessellation.
+pub enum Severity {
+    /// The expected image is the one described, apart from filtering or tessellation.
     Note,
-    /// The picture will differ from the one described; an error under `strict`.
+    /// The image differs from the one described. This is an error under `strict`.
     Warning,
 }
 
 /// A feature requested by a scene file that is not modelled, and its replacement.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Warning {
-    /// Place of the request.
-    pub place: Place,
+    /// Location of the request.
+    pub place: Location,
     /// Severity.
-    pub level: Level,
+    pub severity: Severity,
     /// The feature requested.
     pub what: String,
     /// The replacement.
@@ -90,27 +92,27 @@ pub enum SceneError {
     Read {
         /// The file.
         path: PathBuf,
-        /// Place that refers to it.
-        from: Place,
-        /// Error of the operating system; no `source`, since the message holds it.
+        /// Location of the reference to the file.
+        from: Location,
+        /// Error of the operating system; no `source`, because the message contains it.
         error: std::io::Error,
     },
-    /// A file whose extension is that of no supported format.
+    /// A file whose extension belongs to no supported format.
     #[error("{}: unknown kind of scene; name a .toml (native), .xml (Mitsuba), .glb or .gltf file", .0.display())]
     UnknownFormat(PathBuf),
     /// Text that is not well-formed XML or TOML.
     #[error("{place}: {message}; correct the file's syntax")]
     Syntax {
-        /// Place of the error.
-        place: Place,
+        /// Location of the error.
+        place: Location,
         /// Message of the parser.
         message: String,
     },
     /// A value that is missing, of the wrong type or out of range.
     #[error("{place}: {what}; {remedy}")]
     Value {
-        /// Place of the value.
-        place: Place,
+        /// Location of the value.
+        place: Location,
         /// Description of the error.
         what: String,
         /// Remedy.
@@ -119,47 +121,47 @@ pub enum SceneError {
     /// A reference to a name that is not defined in the scene.
     #[error("{place}: there is no {kind} called \"{name}\"; define it or correct the name")]
     Reference {
-        /// Place of the reference.
-        place: Place,
+        /// Location of the reference.
+        place: Location,
         /// Kind of object referred to.
         kind: &'static str,
         /// The name.
         name: String,
     },
-    /// A camera that was asked for, and is not in the scene.
+    /// A requested camera that the scene lacks.
     #[error("{place}: there is no camera \"{name}\"; {remedy}")]
     Camera {
         /// The scene.
-        place: Place,
+        place: Location,
         /// Number or name of the camera.
         name: String,
-        /// Remedy, with the cameras that there are.
+        /// Remedy, with a list of the scene's cameras.
         remedy: String,
     },
     /// A mesh file with wrong contents.
     #[error("{place}: {what}; repair or re-export the mesh")]
     Mesh {
-        /// Place of the error.
-        place: Place,
+        /// Location of the error.
+        place: Location,
         /// Description of the error.
         what: String,
     },
-    /// A picture that cannot be decoded.
+    /// An image that cannot be decoded.
     #[error("{place}: cannot decode {}: {what}; convert it to PNG, JPEG, BMP, TGA, Radiance HDR or OpenEXR", .path.display())]
-    Picture {
-        /// Place that refers to it.
-        place: Place,
-        /// The picture.
+    Image {
+        /// Location of the reference to the file.
+        place: Location,
+        /// The image file.
         path: PathBuf,
         /// Message of the decoder.
         what: String,
     },
-    /// Errors of several parts of a scene, the first of them in the order of the description.
+    /// Errors of several parts of a scene, in the order of the description.
     #[error("{}{}", lines(.first), more(.left_out))]
     Several {
-        /// The first [`MAX_ERRORS`].
+        /// The first errors, at most [`MAX_ERRORS`].
         first: Vec<SceneError>,
-        /// Number of those after them.
+        /// Number of errors after these.
         left_out: usize,
     },
     /// A warning, under `strict`.
@@ -167,12 +169,12 @@ pub enum SceneError {
     Strict(Warning),
 }
 
-/// Maximum number of errors that are told at once.
+/// Maximum number of errors in one message.
 const MAX_ERRORS: usize = 10;
 
-/// The place that asks for a file, where that is another file.
-fn asker(from: &Place, path: &Path) -> String {
-    if *from == Place::file(path) { String::new() } else { format!("{from}: ") }
+/// Returns the location that refers to a file, if it is in another file.
+fn asker(from: &Location, path: &Path) -> String {
+    if *from == Location::file(path) { String::new() } else { format!("{from}: ") }
 }
 
 fn lines(errors: &[SceneError]) -> String {
@@ -184,7 +186,7 @@ fn more(left_out: &usize) -> String {
 }
 
 impl SceneError {
-    /// Returns the error that stands for all of `errors`, each once.
+    /// Returns one error for all of `errors`, without repetitions.
     pub fn all(errors: Vec<SceneError>) -> SceneError {
         let mut said = BTreeSet::new();
         let mut first: Vec<SceneError> =
@@ -195,12 +197,14 @@ impl SceneError {
     }
 
     /// Returns the error of a wrong mesh file.
-    pub fn mesh(place: Place, what: impl Into<String>) -> SceneError {
+    pub fn mesh(place: Location, what: impl Into<String>) -> SceneError {
         SceneError::Mesh { place, what: what.into() }
     }
 }
 
-/// Collects warnings, or turns them into errors under `strict`, and the errors of independent parts of a description.
+/// Log of warnings, and of the errors of independent parts of a description.
+///
+/// Under `strict`, warnings are errors.
 #[derive(Debug, Default)]
 pub(crate) struct Log {
     strict: bool,
@@ -214,7 +218,7 @@ impl Log {
         Log { strict, ..Log::default() }
     }
 
-    /// Returns the value of a part of the description, or keeps its error while others are read.
+    /// Returns the value of a part of the description, or stores its error and returns `None`.
     pub fn part<T>(&mut self, outcome: Result<T, SceneError>) -> Option<T> {
         outcome.map_err(|error| self.errors.push(error)).ok()
     }
@@ -228,16 +232,19 @@ impl Log {
         }
     }
 
-    /// Adds a warning about a change of the picture.
+    /// Adds a warning about a change of the image.
+    ///
+    /// # Errors
+    /// Under `strict`.
     pub fn warn(
         &mut self,
-        place: &Place,
+        place: &Location,
         what: impl Into<String>,
         fallback: impl Into<String>,
     ) -> Result<(), SceneError> {
         let warning = Warning {
             place: place.clone(),
-            level: Level::Warning,
+            severity: Severity::Warning,
             what: what.into(),
             fallback: fallback.into(),
         };
@@ -248,24 +255,24 @@ impl Log {
         Ok(())
     }
 
-    /// Adds a note that does not concern the expected picture.
-    pub fn note(&mut self, place: &Place, what: impl Into<String>, fallback: impl Into<String>) {
+    /// Adds a note about a feature that does not change the expected image.
+    pub fn note(&mut self, place: &Location, what: impl Into<String>, fallback: impl Into<String>) {
         self.push(Warning {
             place: place.clone(),
-            level: Level::Note,
+            severity: Severity::Note,
             what: what.into(),
             fallback: fallback.into(),
         });
     }
 
-    /// The same message for the same place is added once.
+    /// Adds a warning, unless the log already contains it.
     fn push(&mut self, warning: Warning) {
         if !self.warnings.contains(&warning) {
             self.warnings.push(warning);
         }
     }
 
-    /// Returns the warnings, in the order in which they came.
+    /// Returns the warnings in the order in which they were added.
     pub fn into_warnings(self) -> Vec<Warning> {
         self.warnings
     }
@@ -278,7 +285,7 @@ mod tests {
     #[test]
     fn errors_of_parts_are_told_together_each_once_and_no_more_than_ten() {
         let mut log = Log::new(false);
-        let place = |line| Place::line(Path::new("s.xml"), line);
+        let place = |line| Location::line(Path::new("s.xml"), line);
         assert_eq!(log.part(Ok(7)), Some(7));
         assert!(log.conclude(Ok(())).is_ok());
         log.part::<()>(Err(place(1).wrong("a", "b")));

@@ -1,32 +1,35 @@
-//! Files that scene descriptions are, or refer to.
+//! Files of scene descriptions, and files that they refer to.
 
 use super::budget::lacking;
-use super::error::{Place, SceneError};
+use super::error::{Location, SceneError};
 use std::fs;
 use std::io;
 use std::path::Path;
 
-/// Memory over length of a file of a mesh: its bytes, and those of the arrays that grow from it, old and new.
-const READING: u64 = 3;
+/// Memory per byte of a mesh file: its bytes, and the growing arrays of its content, old and new.
+const BYTES_PER_FILE_BYTE: u64 = 3;
 
 /// Reads a file that `from` refers to.
-pub(crate) fn read_file(path: &Path, from: &Place) -> Result<Vec<u8>, SceneError> {
+pub(crate) fn read_file(path: &Path, from: &Location) -> Result<Vec<u8>, SceneError> {
     let fail = |error| SceneError::Read { path: path.to_owned(), from: from.clone(), error };
     let length = regular_length(path).map_err(fail)?;
-    if let Some(lack) = lacking(length.saturating_mul(READING)) {
+    if let Some(lack) = lacking(length.saturating_mul(BYTES_PER_FILE_BYTE)) {
         let what = format!("reading it takes {lack}");
-        return Err(Place::file(path).wrong(what, "divide or simplify it, or give more memory"));
+        return Err(Location::file(path).wrong(what, "divide or simplify it, or give more memory"));
     }
     fs::read(path).map_err(fail)
 }
 
 /// Reads a regular file.
+///
+/// # Errors
+/// If the file cannot be read, or is a device, pipe or folder.
 pub fn read_regular(path: &Path) -> io::Result<Vec<u8>> {
     regular_length(path)?;
     fs::read(path)
 }
 
-/// Returns the length of a file that is regular: devices have no end, and pipes may never have a beginning.
+/// Returns the length of a regular file. Devices have no end, and pipes may block.
 fn regular_length(path: &Path) -> io::Result<u64> {
     let metadata = fs::metadata(path)?;
     if !metadata.is_file() {
@@ -35,13 +38,13 @@ fn regular_length(path: &Path) -> io::Result<u64> {
     Ok(metadata.len())
 }
 
-/// Reads a description's own file, to which `from` refers; returns its text and the hash of its bytes.
-pub(crate) fn read_text(path: &Path, from: &Place) -> Result<(String, u64), SceneError> {
+/// Reads a description's own file, to which `from` refers; returns the text and the hash of its bytes.
+pub(crate) fn read_text(path: &Path, from: &Location) -> Result<(String, u64), SceneError> {
     let bytes = read_file(path, from)?;
     let hash = fnv1a(&bytes);
     let text = String::from_utf8(bytes).map_err(|e| {
         let line = e.as_bytes()[..e.utf8_error().valid_up_to()].iter().filter(|&&b| b == b'\n').count();
-        Place::line(path, line as u32 + 1).malformed("the text is not UTF-8")
+        Location::line(path, line as u32 + 1).malformed("the text is not UTF-8")
     })?;
     Ok((text, hash))
 }
@@ -56,7 +59,7 @@ pub(crate) fn stem_of(path: &Path) -> String {
     path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default()
 }
 
-/// 64-bit FNV-1a: negligible beside parsing, and sufficient to tell scenes apart.
+/// Computes the 64-bit FNV-1a hash of bytes.
 pub fn fnv1a(bytes: &[u8]) -> u64 {
     bytes.iter().fold(0xcbf2_9ce4_8422_2325, |h, &b| (h ^ u64::from(b)).wrapping_mul(0x0100_0000_01b3))
 }

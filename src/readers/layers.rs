@@ -1,27 +1,29 @@
 //! Materials made of other materials: coats over them, and blends.
 
-use super::error::{Log, Place, SceneError};
+use super::error::{Location, Log, SceneError};
 use base::math::Rgb;
 use scene::{Blend, Coat, Lobe, Material, Reflectance, Share};
 
-/// A surface of a coat.
-pub(super) struct Surface {
-    /// Index of refraction inside over that outside.
+/// Dielectric surface of a coat.
+pub(super) struct CoatSurface {
+    /// Interior over exterior index of refraction.
     pub eta: f32,
     pub lobe: Lobe,
-    /// Share of the light that is left on its way through the coat and back.
+    /// Transmittance of the way through the coat and back.
     pub through: Rgb,
 }
 
-/// The material under a dielectric coat: a diffuse one is that of plastic, and lobes lose at the coat as much as at
-/// normal incidence. Materials that cannot be coated are left bare, with a warning.
+/// Returns a material under a dielectric coat.
+///
+/// A diffuse base becomes the base of plastic. Lobes are attenuated by the coat's transmittance at normal incidence.
+/// Materials that cannot be coated stay bare, with a warning.
 pub(super) fn coated(
     mut nested: Material,
-    surface: Surface,
-    place: &Place,
+    surface: CoatSurface,
+    place: &Location,
     log: &mut Log,
 ) -> Result<Material, SceneError> {
-    let Surface { eta, lobe, through } = surface;
+    let CoatSurface { eta, lobe, through } = surface;
     let transmits = |lobe: &Lobe| matches!(lobe, Lobe::Dielectric { .. } | Lobe::RoughDielectric { .. });
     let is_layered = nested.coat.is_some() || nested.principled.is_some() || nested.blend.is_some();
     if is_layered || nested.lobes.iter().any(transmits) {
@@ -42,12 +44,13 @@ pub(super) fn coated(
     Ok(nested)
 }
 
-/// A mixture of two materials, of the second to the share `weight`; masks and reliefs of the second, and a blend as the
-/// first, are left out, with a warning.
+/// Returns the mixture of two materials; `weight` is the share of the second.
+///
+/// These are left out with a warning: masks and reliefs of the second material, and a blend as the first.
 pub(super) fn blended(
     weight: Share,
     [first, other]: [Material; 2],
-    place: &Place,
+    place: &Location,
     log: &mut Log,
 ) -> Result<Material, SceneError> {
     let is_based =

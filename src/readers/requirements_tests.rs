@@ -1,4 +1,4 @@
-//! Requirements of scenes that files describe.
+//! Tests of the requirements of scene files.
 
 use crate::{LoadOptions, load};
 use scene::Requirements;

@@ -1,4 +1,4 @@
-//! Cameras with square pixels: pinholes, thin lenses, parallel projection.
+//! Cameras with square pixels: pinhole, thin lens, parallel projection.
 
 use super::PixelFilter;
 use base::sampling::uniform_disk;
@@ -7,7 +7,8 @@ use glam::{Vec2, Vec3};
 /// A camera. Pixel (0, 0) is the top-left corner of the film.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
-    /// Pinhole, middle of the lens, or of the film of a parallel projection, relative to the scene's centre.
+    /// Position of the pinhole, of the lens centre, or of the film centre of a parallel projection, relative to the
+    /// scene's centre.
     pub origin: Vec3,
     /// Unit vector through the film's centre.
     pub forward: Vec3,
@@ -15,33 +16,33 @@ pub struct Camera {
     pub right: Vec3,
     /// Unit vector towards the film's top edge.
     pub up: Vec3,
-    /// Tangent of half the horizontal field of view, for the scene's own aspect ratio; half the film's width in a
+    /// Tangent of half the horizontal field of view, for the scene's own aspect ratio. Half the film's width for a
     /// parallel projection.
     pub tan_half_x: f32,
     /// Near clipping distance along `forward`.
     pub near: f32,
     /// Far clipping distance along `forward`.
     pub far: f32,
-    /// How the film is lit.
+    /// Projection onto the film.
     pub projection: Projection,
-    /// Filter of the film's pixels.
+    /// Pixel filter of the film.
     pub filter: PixelFilter,
 }
 
 /// Projection of the scene onto the film.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Projection {
-    /// Through a point: all is in focus.
+    /// Projection through a point; everything is in focus.
     #[default]
     Pinhole,
-    /// Through a thin lens.
+    /// Projection through a thin lens.
     Lens {
         /// Radius of the lens.
         radius: f32,
         /// Distance along `forward` of the plane in focus.
         distance: f32,
     },
-    /// Along `forward`.
+    /// Parallel projection along `forward`.
     Parallel,
 }
 
@@ -51,20 +52,20 @@ pub const MAX_SIDE: u32 = 65536;
 /// Maximum number of frames in a camera path.
 pub const MAX_FRAMES: usize = 1 << 20;
 
-/// Cameras that a scene's file describes, and the size of their film.
+/// Cameras of a scene file, and the size of their film.
 #[derive(Clone, Debug, Default)]
 pub struct Cameras {
     /// The camera of a still.
     pub still: Camera,
-    /// One camera a frame where the file has a walk-through, else empty.
+    /// Camera of each frame of a camera path; empty without a path.
     pub path: Vec<Camera>,
     /// Width and height of the film in pixels.
     pub resolution: [u32; 2],
-    /// Offset and size of the only part of it that is wanted.
+    /// Offset and size of the part of the film to render, if not all of it.
     pub crop: Option<[[u32; 2]; 2]>,
 }
 
-/// At the centre, looking along -z with y up, with a horizontal field of view of a right angle.
+/// The camera at the centre, looking along -z with y up, with a horizontal field of view of 90°.
 impl Default for Camera {
     fn default() -> Camera {
         Camera {
@@ -82,24 +83,26 @@ impl Default for Camera {
 }
 
 impl Camera {
-    /// Unit direction from a pinhole through film position `pixel` (in pixels, continuous) of a `resolution` film.
+    /// Returns the unit direction from a pinhole through film position `pixel` (in pixels, continuous) of a
+    /// `resolution` film.
     ///
-    /// The horizontal field of view is kept when the aspect ratio changes.
+    /// The horizontal field of view is the same for all aspect ratios.
     #[inline]
     pub fn direction(&self, pixel: [f32; 2], resolution: [u32; 2]) -> Vec3 {
         let [x, y] = self.across(pixel, resolution);
         (self.forward + self.right * x + self.up * y).normalize()
     }
 
-    /// Way to the right and up across the film from its middle to `pixel`, at the distance 1 from a pinhole.
+    /// Returns the offset to the right and up from the film's centre to `pixel`, at distance 1 from a pinhole.
     #[inline]
     fn across(&self, pixel: [f32; 2], resolution: [u32; 2]) -> [f32; 2] {
         let [w, h] = resolution.map(|r| r as f32);
         [(2.0 * pixel[0] / w - 1.0) * self.tan_half_x, (h - 2.0 * pixel[1]) / w * self.tan_half_x]
     }
 
-    /// Origin and unit direction of the ray through film position `pixel`, and through the place of a lens to which
-    /// `lens` in the unit square is mapped.
+    /// Returns origin and unit direction of the ray through film position `pixel`.
+    ///
+    /// `lens` in the unit square chooses the position on a lens.
     #[inline]
     pub fn ray(&self, pixel: [f32; 2], resolution: [u32; 2], lens: Vec2) -> (Vec3, Vec3) {
         let across = |[x, y]: [f32; 2]| self.right * x + self.up * y;

@@ -1,11 +1,11 @@
 //! Delta lights (point, spot and directional lights), distant discs, and the environment.
 //!
-//! Light from surfaces is [`super::Emission`] on a mesh.
+//! For light from surfaces see [`super::Emission`].
 
 use base::math::Rgb;
 use glam::{Mat3, Vec3};
 
-/// A light that no ray can hit by chance.
+/// A light that no ray can hit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum DeltaLight {
     /// A point light: equal intensity in all directions.
@@ -15,8 +15,8 @@ pub enum DeltaLight {
         /// Radiant intensity, W/sr.
         intensity: Rgb,
     },
-    /// A spot light; intensity falls linearly in angle from `inner_angle` to `outer_angle` (Mitsuba's
-    /// falloff: `(outer_angle - angle) / (outer_angle - inner_angle)`).
+    /// A spot light. The intensity falls linearly in angle from `inner_angle` to `outer_angle`, as in Mitsuba:
+    /// `(outer_angle - angle) / (outer_angle - inner_angle)`.
     Spot {
         /// Position relative to the scene's centre.
         position: Vec3,
@@ -38,18 +38,18 @@ pub enum DeltaLight {
     },
 }
 
-/// A disc infinitely far away that shines evenly, such as the sun.
+/// An evenly emitting disc at infinite distance, such as the sun.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DistantDisc {
-    /// Unit direction towards its centre.
+    /// Unit direction towards the centre.
     pub direction: Vec3,
-    /// Angle from its centre to its rim, radians.
+    /// Angle from the centre to the rim, radians.
     pub half_angle: f32,
     /// Radiance, W/(sr m²), added to that of the environment.
     pub radiance: Rgb,
 }
 
-/// Light from infinitely far in every direction.
+/// Light from infinitely far, in all directions.
 #[derive(Clone, Debug)]
 pub enum Environment {
     /// Constant radiance from all directions.
@@ -58,18 +58,19 @@ pub enum Environment {
     Map(EnvironmentMap),
 }
 
-/// Latitude-longitude radiance map, Mitsuba's convention: with `d` the direction in the map's own
-/// frame, `u = atan2(d.x, -d.z) / 2π` (wrapped to [0, 1)) and `v = acos(d.y) / π`. Between texels the map
-/// is bilinear: column i lies at `u = (i + 0.5) / width`, across the seam too, but row j at
-/// `v = j / (height - 1)`, so that the first row is the pole +y and the last -y.
+/// Latitude-longitude map of radiance, in Mitsuba's convention.
+///
+/// Let `d` be the direction in the map's own frame. Then `u = atan2(d.x, -d.z) / 2π`, wrapped to [0, 1), and `v =
+/// acos(d.y) / π`. Texels are interpolated bilinearly. Column i lies at `u = (i + 0.5) / width`, also across the seam.
+/// Row j lies at `v = j / (height - 1)`, so the first row is the pole +y and the last -y.
 #[derive(Clone, Debug)]
 pub struct EnvironmentMap {
     /// Columns of the image.
     pub width: usize,
     /// Rows of the image.
     pub height: usize,
-    /// Radiance, row-major, `scale` already applied.
+    /// Radiance in W/(sr m²), row-major, `scale` applied.
     pub radiance: Vec<Rgb>,
-    /// World direction to the map's frame.
+    /// Transform of world directions to the map's frame.
     pub to_local: Mat3,
 }

@@ -1,107 +1,38 @@
 //! Scattering of a surface: a Lambert base, up to three lobes above it, and an optional clear coat.
 //!
-//! Every material of the supported formats is one of these combinations, so a stage that handles base, lobes
-//! and coat handles them all: `plastic` is a base under a coat with a mirror lobe, `roughplastic` the same
-//! with a rough lobe, `conductor` a mirror lobe alone. [`Principled`] is a combination of its own. Any of them may
-//! have gaps ([`Material::opacity`]).
+//! Every material of the supported formats is such a combination. For instance, `plastic` is a base under a coat with a
+//! mirror lobe, `roughplastic` a base under a coat with a rough lobe, and `conductor` a mirror lobe alone.
+//! [`Principled`] has parameters of its own. Any material may have an opacity ([`Material::opacity`]).
 
+use super::parameter::{Reflectance, Roughness, Share};
 use super::principled::Principled;
 use super::relief::Relief;
-use super::texture::TextureId;
 use base::math::Rgb;
-use std::ops::Mul;
 
 /// Index into [`super::Scene::materials`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct MaterialId(pub u32);
 
-/// Colour or number that may vary over the surface.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Parameter<T> {
-    /// The same everywhere.
-    Constant(T),
-    /// The texture's value times `scale`; a number takes the luminance of each texel.
-    Textured {
-        /// Index of the texture.
-        texture: TextureId,
-        /// Factor on every texel.
-        scale: T,
-    },
-}
-
-/// Share of the light that is scattered, per channel.
-pub type Reflectance = Parameter<Rgb>;
-
-/// Microfacet roughness α.
-pub type Roughness = Parameter<f32>;
-
-/// Number from 0 to 1.
-pub type Share = Parameter<f32>;
-
-impl<T: Copy + Mul<Output = T>> Parameter<T> {
-    /// Returns the parameter where each texture has the value `texel` of it.
-    #[inline]
-    pub fn value(&self, texel: impl FnOnce(TextureId) -> T) -> T {
-        match *self {
-            Parameter::Constant(value) => value,
-            Parameter::Textured { texture, scale } => texel(texture) * scale,
-        }
-    }
-
-    /// True if it varies over the surface.
-    pub fn is_textured(&self) -> bool {
-        matches!(self, Parameter::Textured { .. })
-    }
-}
-
-impl<T> From<T> for Parameter<T> {
-    fn from(value: T) -> Parameter<T> {
-        Parameter::Constant(value)
-    }
-}
-
-impl Reflectance {
-    /// Returns the parameter times a factor.
-    pub fn times(self, factor: Rgb) -> Reflectance {
-        match self {
-            Reflectance::Constant(value) => Reflectance::Constant(value * factor),
-            Reflectance::Textured { texture, scale } => {
-                Reflectance::Textured { texture, scale: scale * factor }
-            }
-        }
-    }
-
-    /// No reflection anywhere.
-    pub const BLACK: Reflectance = Reflectance::Constant(Rgb::ZERO);
-}
-
-impl Default for Reflectance {
-    fn default() -> Reflectance {
-        Reflectance::BLACK
-    }
-}
-
-/// Material: base and lobes, seen from one side or two. The default is black.
+/// A material. The default is black.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Material {
     /// Name for reports.
     pub name: String,
-    /// True: the side away from the normal behaves as the front does. False: it is black
-    /// (except for glass, which always has two sides).
+    /// True if the back scatters as the front does. Else the back is black, except for glass.
     pub two_sided: bool,
-    /// Albedo of the Lambert base, before the coat takes its share; zero where there is none.
+    /// Albedo of the Lambert base, without the coat's transmittance; zero without a base.
     pub diffuse: Reflectance,
-    /// Dielectric interface over the base, as rough as the first rough lobe.
+    /// Dielectric interface over the base. Its roughness is that of the first rough lobe.
     pub coat: Option<Coat>,
-    /// Lobes besides the base: up to five, of which those of glass count for two. More are ignored.
+    /// Lobes besides the base: up to five; lobes of glass count twice. Further lobes are ignored.
     pub lobes: Vec<Lobe>,
-    /// Base and lobes in terms of other parameters; base, coat and lobes above are left out where it is given.
+    /// Principled parameters. They replace base, coat and lobes above.
     pub principled: Option<Box<Principled>>,
-    /// Another material that is mixed with this one; of its own, base and lobes count.
+    /// Material that is mixed with this one. Only its base and lobes count.
     pub blend: Option<Box<Blend>>,
-    /// Share of the surface that is there, of either side; light passes the rest straight. `None`: all of it.
+    /// Opacity of either side; light passes the remaining share straight. `None` stands for an opaque surface.
     pub opacity: Option<Share>,
-    /// Relief, which turns the shading normals.
+    /// Relief, which changes the shading normals.
     pub relief: Option<Relief>,
 }
 
@@ -125,13 +56,14 @@ impl Material {
         all
     }
 
-    /// Returns the material's own parts and, in turn, those of the ones mixed with it.
+    /// Returns the material, and in turn the materials mixed with it.
     pub fn parts(&self) -> impl Iterator<Item = &Material> {
         std::iter::successors(Some(self), |material| material.blend.as_ref().map(|blend| &blend.other))
     }
 
-    /// Angle from u, in radians, along which it scatters light otherwise than across; `None` if it is isotropic. Of
-    /// several that are mixed, that of the first.
+    /// Returns the angle from u in radians of the axis of anisotropy; `None` if isotropic.
+    ///
+    /// In a mixture, the first anisotropic material counts.
     pub fn anisotropy_angle(&self) -> Option<f32> {
         self.parts().find_map(|part| {
             let of_lobe = |lobe: &Lobe| matches!(lobe, Lobe::Anisotropic { .. }).then_some(0.0);
@@ -152,7 +84,7 @@ impl Material {
         all
     }
 
-    /// True if the roughness of a lobe is textured, a blended material's left out.
+    /// True if the roughness of a lobe is textured. A mixed-in material does not count.
     pub fn has_textured_roughness(&self) -> bool {
         self.principled.as_ref().is_some_and(|principled| principled.roughness.is_textured())
             || self.lobes.iter().any(|lobe| match lobe {
@@ -184,7 +116,7 @@ impl Material {
     }
 }
 
-/// Mixture with another material. Where the bases of both lie under coats that differ, that of the first covers both.
+/// Mixture with another material. If the bases lie under different coats, the coat of the first covers both.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Blend {
     /// Share of the other material.
@@ -193,13 +125,14 @@ pub struct Blend {
     pub other: Material,
 }
 
-/// Smooth or rough dielectric interface over the Lambert base, as Mitsuba's `plastic` and
-/// `roughplastic` define it: the base is attenuated by the transmittance in and out and by internal reflection.
+/// Smooth or rough dielectric interface over the Lambert base, as in Mitsuba's `plastic` and `roughplastic`.
+///
+/// The base is attenuated by the transmittance in and out, and by internal reflection.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Coat {
     /// Interior over exterior index of refraction.
     pub eta: f32,
-    /// True if internal scattering shifts the base's colour (`1 - albedo * F_dr` per channel) or not (`1 - F_dr`).
+    /// True if internal scattering shifts the base's colour: `1 - albedo * F_dr` per channel instead of `1 - F_dr`.
     pub nonlinear: bool,
 }
 
@@ -210,19 +143,18 @@ pub enum Lobe {
     Rough {
         /// Microfacet distribution.
         distribution: Distribution,
-        /// Roughness.
+        /// Roughness α.
         alpha: Roughness,
         /// Reflectance of a facet.
         fresnel: Fresnel,
         /// Factor on the lobe.
         scale: Reflectance,
     },
-    /// Microfacet reflection of another roughness along u than along v, texture coordinates. Where a mesh has none, u
-    /// is any direction.
+    /// Microfacet reflection with different roughness along u and v. Without texture coordinates, u is any direction.
     Anisotropic {
         /// Microfacet distribution.
         distribution: Distribution,
-        /// Roughness along u, and along v.
+        /// Roughness α along u, and along v.
         alpha: [f32; 2],
         /// Reflectance of a facet.
         fresnel: Fresnel,
@@ -236,23 +168,23 @@ pub enum Lobe {
         /// Factor on the lobe.
         scale: Reflectance,
     },
-    /// Smooth glass: reflects and refracts.
+    /// Smooth glass, which reflects and refracts.
     Dielectric {
         /// Interior over exterior index of refraction; the interior is behind the normal.
         eta: f32,
-        /// True for a sheet with an interface on either side, so close to each other that light which passes it, and is
-        /// reflected between them any number of times, goes straight on.
+        /// True for a sheet with two interfaces close to each other. Light passes straight, with all internal
+        /// reflections.
         thin: bool,
         /// Factor on reflection.
         reflectance: Reflectance,
-        /// Factor on refraction (radiance also scales by 1/η² as it enters the denser side).
+        /// Factor on refraction. Radiance also scales by 1/η² on entering the denser side.
         transmittance: Reflectance,
     },
-    /// Rough glass: reflects and refracts by microfacets.
+    /// Rough glass, which reflects and refracts at microfacets.
     RoughDielectric {
         /// Microfacet distribution.
         distribution: Distribution,
-        /// Roughness.
+        /// Roughness α.
         alpha: Roughness,
         /// Interior over exterior index of refraction; the interior is behind the normal.
         eta: f32,
@@ -263,34 +195,34 @@ pub enum Lobe {
     },
 }
 
-/// Microfacet distributions, both with Smith's separable shadowing as Mitsuba uses it.
+/// Microfacet distribution, with Smith's separable shadowing as in Mitsuba.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Distribution {
-    /// Trowbridge-Reitz.
+    /// Distribution of Trowbridge and Reitz.
     Ggx,
-    /// Beckmann.
+    /// Distribution of Beckmann.
     Beckmann,
 }
 
 /// Reflectance of a smooth interface by angle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Fresnel {
-    /// 1 at every angle; the lobe's scale says the rest.
+    /// Reflectance 1 at every angle.
     One,
-    /// Dielectric of the given relative index of refraction.
+    /// Dielectric of a relative index of refraction.
     Dielectric(f32),
     /// Conductor of index `eta + i k`, per channel.
     Conductor {
-        /// Real part.
+        /// Real part of the index.
         eta: Rgb,
-        /// Absorption.
+        /// Imaginary part of the index.
         k: Rgb,
     },
     /// Schlick's approximation between two reflectances.
     Schlick {
-        /// At normal incidence.
+        /// Reflectance at normal incidence.
         normal: Rgb,
-        /// At grazing incidence.
+        /// Reflectance at grazing incidence.
         edge: f32,
     },
 }

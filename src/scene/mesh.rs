@@ -12,12 +12,14 @@ pub struct Mesh {
     pub name: String,
     /// Vertex positions relative to the scene's centre.
     pub positions: Vec<Vec3>,
-    /// Shading normals by vertex, or empty: then the geometric normal is used. Of unit length, but for vertices within
-    /// an edge that was cut, whose shorter ones are interpolated as on the whole edge.
+    /// Shading normal of each vertex, or empty for geometric normals.
+    ///
+    /// Normals have unit length, except at vertices within a divided edge. These interpolate the normals of the whole
+    /// edge.
     pub normals: Vec<Vec3>,
-    /// Texture coordinates by vertex, v up, or empty: then the barycentric coordinates are used.
+    /// Texture coordinates of each vertex, v upwards, or empty for barycentric coordinates.
     pub uvs: Vec<Vec2>,
-    /// Vertex indices, counter-clockwise seen from the front; all in range.
+    /// Vertex indices, counter-clockwise seen from the front. All are in range.
     pub triangles: Vec<[u32; 3]>,
     /// Material of every triangle.
     pub material: MaterialId,
@@ -28,23 +30,24 @@ pub struct Mesh {
 /// Diffuse emission of a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Emission {
-    /// Radiance leaving every point in every direction of the front side.
+    /// Radiance from every point of the front, in every direction, W/(sr m²).
     pub radiance: Rgb,
-    /// Texture that scales it over the surface.
+    /// Texture of factors on the radiance.
     pub texture: Option<TextureId>,
     /// True if the back emits as well.
     pub two_sided: bool,
 }
 
 impl Mesh {
-    /// The corners of triangle `t`.
+    /// Returns the corners of triangle `t`.
     #[inline]
     pub fn corners(&self, t: usize) -> [Vec3; 3] {
         self.triangles[t].map(|i| self.positions[i as usize])
     }
 
-    /// The interpolated normal, not of unit length, at barycentric weights `b` of the last two of a triangle's
-    /// `vertices`; `None` where the mesh has no normals.
+    /// Returns the interpolated normal, not of unit length; `None` if the mesh has no normals.
+    ///
+    /// `b` are the barycentric weights of the last two of a triangle's `vertices`.
     #[inline]
     pub fn normal(&self, vertices: &[u32; 3], b: Vec2) -> Option<Vec3> {
         if self.normals.is_empty() {
@@ -54,8 +57,9 @@ impl Mesh {
         Some(n0 * (1.0 - b.x - b.y) + n1 * b.x + n2 * b.y)
     }
 
-    /// Texture coordinates at barycentric weights `b` of the last two of a triangle's `vertices`; the weights
-    /// themselves where the mesh has no coordinates.
+    /// Returns the texture coordinates, or `b` if the mesh has none.
+    ///
+    /// `b` are the barycentric weights of the last two of a triangle's `vertices`.
     #[inline]
     pub fn uv(&self, vertices: &[u32; 3], b: Vec2) -> Vec2 {
         if self.uvs.is_empty() {

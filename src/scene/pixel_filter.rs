@@ -1,13 +1,14 @@
-//! Filters of the film's pixels.
+//! Pixel filters.
 //!
-//! Filters are sampled, not splatted: a pixel's samples lie around it by a density, and count alike. So the noise of
-//! neighbours is independent, as denoisers expect, and every method filters by the places of its eye rays.
+//! Filters are sampled, not splatted: samples of a pixel are distributed by a density and have equal weights. So the
+//! noise of neighbours is independent, as denoisers expect. Every method filters by the positions of its eye rays.
 //!
-//! A filter with negative lobes is no density. It is one that is wider, sharpened afterwards: each pixel of the clean
-//! picture is 1 + 2a of its own less a of each neighbour, along both axes. The density is what gives the filter when
-//! sharpened, the filter's convolution with the inverse of (-a, 1 + 2a, -a), cut off at [`REACH`] and at 0; a is that
-//! of the least difference which this leaves in the mean square over the film, relative to the filter's norm: .09 % for
-//! Mitchell and Netravali's, .2 % for Catmull and Rom's, 2.8 % for Lanczos's of three lobes, most of it in the third.
+//! A filter with negative lobes is no density. Its samples follow a wider density, and the clean image is sharpened.
+//! Along both axes a sharpened pixel is (1 + 2a) times its value minus a times each neighbour.
+//!
+//! The density is the filter's convolution with the inverse of (-a, 1 + 2a, -a), clipped at [`REACH`] and at 0. The
+//! constant a minimises the mean square difference that clipping leaves. Relative to the filter's norm, the difference
+//! is 0.09 % for Mitchell and Netravali, 0.2 % for Catmull and Rom, and 2.8 % for Lanczos with three lobes.
 //!
 //! Papers: M. Ernst, M. Stamminger, G. Greiner, *Filter Importance Sampling*, 2006; D. Mitchell, A. Netravali,
 //! *Reconstruction Filters in Computer Graphics*, 1988. F. Harris, *On the Use of Windows for Harmonic Analysis with
@@ -18,55 +19,56 @@ use glam::Vec2;
 use std::f32::consts::PI;
 use std::sync::OnceLock;
 
-/// Weights of light around a pixel's middle.
+/// Weights of samples around a pixel's centre.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum PixelFilter {
-    /// Even over the pixel itself.
+    /// Box: constant over the pixel.
     #[default]
     Box,
-    /// Falling linearly along each axis, to 0 at the distance `radius`, in pixels.
+    /// Tent: falls linearly along each axis to 0 at distance `radius`.
     Tent {
-        /// Half its width.
+        /// Half the width, in pixels.
         radius: f32,
     },
-    /// A normal distribution, cut off at four times its deviation, in pixels.
+    /// Normal distribution, clipped at four standard deviations.
     Gaussian {
-        /// Standard deviation.
+        /// Standard deviation, in pixels.
         deviation: f32,
     },
-    /// The window of Blackman and Harris, of four terms, three pixels wide.
+    /// Window of Blackman and Harris of four terms, three pixels wide.
     BlackmanHarris,
-    /// The cubic of Mitchell and Netravali with B = C = 1/3, four pixels wide.
+    /// Returns the cubic of Mitchell and Netravali at distance `x`.
     Mitchell,
-    /// The cubic through its samples, four pixels wide.
+    /// Interpolating cubic of Catmull and Rom, four pixels wide.
     CatmullRom,
-    /// The windowed sinc of three lobes, six pixels wide.
+    /// Windowed sinc of three lobes, six pixels wide.
     Lanczos,
 }
 
-/// Half the width, in pixels, of the window of Blackman and Harris.
+/// Half the width of the window of Blackman and Harris, in pixels.
 const BLACKMAN_HARRIS: f32 = 1.5;
 
-/// Half the width, in pixels, of the density of samples for filters with negative lobes.
+/// Half the width of the density of samples for filters with negative lobes, in pixels.
 const REACH: f32 = 2.5;
 
-/// Number of steps to a pixel by which tables of densities are found.
+/// Number of integration steps per pixel for tables of densities.
 const STEPS: usize = 64;
 
-/// Number of equal parts of probability in a table.
+/// Number of parts of equal probability in a table.
 const PARTS: usize = 512;
 
-/// Distances along an axis that are not exceeded with probability 0, 1 / PARTS, ... 1.
+/// Quantiles of the distance along an axis, for the probabilities 0, 1 / PARTS, ..., 1.
 type Quantiles = [f32; PARTS + 1];
 
 impl PixelFilter {
-    /// Tent and Gaussian as wide as Mitsuba's by default.
+    /// Tent of Mitsuba's default width.
     pub const TENT: PixelFilter = PixelFilter::Tent { radius: 1.0 };
-    /// See [`PixelFilter::TENT`].
+    /// Gaussian of Mitsuba's default width.
     pub const GAUSSIAN: PixelFilter = PixelFilter::Gaussian { deviation: 0.5 };
 
-    /// Maps the unit square to the place of a sample, in pixels from the pixel's top-left corner, and its middle to the
-    /// pixel's.
+    /// Maps the unit square to the position of a sample, in pixels from the pixel's top-left corner.
+    ///
+    /// The square's middle becomes the pixel's middle.
     #[inline]
     pub fn place(&self, u: Vec2) -> Vec2 {
         match *self {
@@ -96,8 +98,8 @@ impl PixelFilter {
         }
     }
 
-    /// How much of each of its two neighbours along an axis a pixel loses when the picture is sharpened; 0 if the
-    /// filter is a density.
+    /// Returns the weight a of sharpening, by which a pixel is diminished by each neighbour along an axis; 0 for
+    /// densities.
     pub fn sharpening(&self) -> f32 {
         match self {
             PixelFilter::Mitchell => 0.07,
@@ -110,7 +112,7 @@ impl PixelFilter {
         }
     }
 
-    /// The filter along an axis at distance `x` in pixels, up to a factor; only of filters that have tables.
+    /// Returns the filter along an axis at distance `x` in pixels, up to a factor, for filters with tables.
     fn weight(&self, x: f32) -> f32 {
         let x = x.abs();
         match self {
@@ -128,7 +130,7 @@ impl PixelFilter {
         }
     }
 
-    /// Density of samples along an axis, up to a factor: what gives the filter once it is sharpened.
+    /// Returns the density of samples along an axis, up to a factor. Sharpening turns it into the filter.
     fn density(&self, x: f32) -> f32 {
         let a = self.sharpening();
         if a == 0.0 {
@@ -137,13 +139,13 @@ impl PixelFilter {
         if x.abs() >= REACH {
             return 0.0;
         }
-        // The inverse of (-a, 1 + 2a, -a) is a sum of powers of the root of its polynomial within the unit circle.
+        // The inverse of (-a, 1 + 2a, -a) sums powers of the root of its polynomial inside the unit circle.
         let root = (1.0 + 2.0 * a - (1.0 + 4.0 * a).sqrt()) / (2.0 * a);
         let shifted = (-8..=8).map(|shift: i32| root.powi(shift.abs()) * self.weight(x - shift as f32));
         shifted.sum::<f32>().max(0.0)
     }
 
-    /// The table of a filter's density along an axis.
+    /// Returns the table of a filter's density along an axis.
     fn quantiles(&self) -> &'static Quantiles {
         static TABLES: [OnceLock<Quantiles>; 4] = [const { OnceLock::new() }; 4];
         let table = match self {
@@ -172,7 +174,7 @@ impl PixelFilter {
     }
 }
 
-/// Maps the unit interval to a distance along an axis, and its middle to 0.
+/// Maps the unit interval to a distance along an axis; 0.5 becomes 0.
 fn quantile(quantiles: &Quantiles, u: f32) -> f32 {
     let side = 2.0 * u - 1.0;
     let part = (side.abs() * PARTS as f32).min(PARTS as f32);
@@ -181,7 +183,7 @@ fn quantile(quantiles: &Quantiles, u: f32) -> f32 {
     (quantiles[index] + within * (quantiles[index + 1] - quantiles[index])).copysign(side)
 }
 
-/// Cubic of Mitchell and Netravali at distance `x`.
+/// Returns the cubic of Mitchell and Netravali at distance `x`.
 fn cubic(x: f32, b: f32, c: f32) -> f32 {
     let polynomial = |k: [f32; 4]| k[0] + x * (k[1] + x * (k[2] + x * k[3]));
     if x < 1.0 {
@@ -236,7 +238,7 @@ mod tests {
         }
     }
 
-    /// Waves along the film pass samples and sharpening as they pass the filter itself.
+    /// Samples and sharpening together pass waves along the film as the filter itself does.
     #[test]
     fn sharpened_densities_are_the_filters_with_negative_lobes() {
         let n = 1 << 14;

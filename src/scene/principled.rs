@@ -1,50 +1,53 @@
-//! The principled material, as Mitsuba 3's plugin `principled` defines it and Blender and glTF mean it.
+//! The principled material, as in Mitsuba 3's plugin `principled`, Blender and glTF.
 //!
 //! Papers: B. Burley, *Physically Based Shading at Disney*, 2012; *Extending the Disney BRDF to a BSDF with Integrated
 //! Subsurface Scattering*, 2015.
-//! Deviations: transmission is as rough in all directions; there is no flatness (a stand-in for subsurface scattering).
+//! Deviations: transmission is isotropic. Flatness, an approximation of subsurface scattering, is missing.
 
-use super::material::{Parameter, Reflectance, Share};
+use super::parameter::{Parameter, Reflectance, Share};
 
 /// Diffuse base, specular reflection of a dielectric or a metal, transmission, sheen and clear coat.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Principled {
-    /// Albedo of the base where it is diffuse, reflectance at normal incidence where it is metal, square of the share
-    /// that passes where it transmits.
+    /// Colour of the base. It is the albedo of the diffuse part, the normal reflectance of metal, and the square of the
+    /// transmittance.
     pub base_color: Reflectance,
-    /// Share of metal; the rest is dielectric.
+    /// Fraction of metal; the rest is dielectric.
     pub metallic: Share,
     /// Square root of the microfacet α (GGX) of reflection and transmission.
     pub roughness: Share,
-    /// From 0 to 1: `a` reflects with α / √(1 - .9 a) along u and α √(1 - .9 a) along v, texture coordinates. Where a
-    /// mesh has none, u is any direction.
+    /// Anisotropy `a` from 0 to 1. Reflection has α / √(1 - 0.9 a) along u and α √(1 - 0.9 a) along v.
+    ///
+    /// Without texture coordinates, u is any direction.
     pub anisotropic: f32,
-    /// Angle from u, on the front counter-clockwise where v is to the left of u, to the direction in place of it.
+    /// Angle in radians from u to the axis that replaces u. It is counter-clockwise seen from the front, if v is to the
+    /// left of u.
     pub anisotropic_rotation: f32,
-    /// Interior over exterior index of refraction of the dielectric. A `specular` s of Mitsuba and Blender is
-    /// η = 2 / (1 - √(.08 s)) - 1.
+    /// Interior over exterior index of refraction of the dielectric.
+    ///
+    /// A `specular` s of Mitsuba and Blender is η = 2 / (1 - √(0.08 s)) - 1.
     pub eta: f32,
-    /// Share of the dielectric's reflection that has the base's hue.
+    /// Fraction of the dielectric's reflection that has the base's hue.
     pub spec_tint: Share,
-    /// Share of the dielectric that transmits light, as rough solid glass, and has no diffuse base.
+    /// Fraction of the dielectric that transmits light as rough solid glass, without a diffuse base.
     pub spec_trans: Share,
-    /// Strength of light scattered at grazing angles, as by fibres, over dielectric.
+    /// Strength of sheen over the dielectric: light scattered at grazing angles, as by fibres.
     pub sheen: Share,
-    /// Share of it that has the base's hue; the rest is white.
+    /// Fraction of the sheen that has the base's hue; the rest is white.
     pub sheen_tint: Share,
-    /// Strength of a second specular lobe, of index 1.5 and a quarter of a coat's full reflectance.
+    /// Strength of the clear coat: a second specular lobe of index 1.5 and a quarter of a coat's reflectance.
     pub clearcoat: Share,
-    /// Gloss of that lobe: 0 for satin (α .1), 1 for gloss (α .001).
+    /// Gloss of the clear coat: 0 for satin (α = 0.1), 1 for gloss (α = 0.001).
     pub clearcoat_gloss: f32,
 }
 
-/// Returns the index of refraction that Mitsuba's and Blender's `specular` stands for.
+/// Returns the index of refraction for `specular` of Mitsuba and Blender.
 pub fn eta_of_specular(specular: f64) -> f32 {
     (2.0 / (1.0 - (0.08 * specular.max(0.0)).sqrt()) - 1.0) as f32
 }
 
 impl Default for Principled {
-    /// Grey of .5 and roughness .5, index 1.5: the plugin's defaults.
+    /// Returns the plugin's defaults: grey of 0.5, roughness 0.5, index 1.5.
     fn default() -> Principled {
         let none = Share::Constant(0.0);
         Principled {

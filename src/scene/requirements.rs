@@ -1,19 +1,19 @@
-//! Requirements of a scene: the materials, specular chains, light trees and textures needed at run time,
-//! their amounts, and an estimate of their memory.
+//! Requirements of a scene: materials, specular chains, light trees and textures, and an estimate of their memory.
 //!
-//! Computed once from the scene. A stage that a scene does not require is not built.
+//! A stage that a scene does not require is not built.
 
-use super::material::{Lobe, Material, Reflectance};
+use super::material::{Lobe, Material};
+use super::parameter::Reflectance;
 use super::{DeltaLight, Environment, Scene};
 use base::math::luminance;
 use glam::DVec3;
 use serde::Serialize;
 use std::fmt;
 
-/// Size of Embree's MEDIUM-quality hierarchy, with its copy of the indices, per triangle; an estimate.
+/// Estimated bytes per triangle of Embree's MEDIUM-quality hierarchy, with its copy of the indices.
 pub const BVH_BYTES_PER_TRIANGLE: usize = 110;
 
-/// Size of a texel of an environment, and of the cumulative sums over it.
+/// Bytes per texel of an environment, and of the cumulative sums over it.
 pub const ENVIRONMENT_TEXEL_BYTES: u64 = 12 + 12 + 8;
 
 /// Number of materials in use, by kind.
@@ -77,11 +77,11 @@ pub struct Requirements {
     pub specular_chains: bool,
     /// True if records need more than irradiance.
     pub glossy: bool,
-    /// Share of the surface area with a rough lobe.
+    /// Fraction of the surface area with a rough lobe.
     pub glossy_area_share: f64,
-    /// Share of the surface area with a mirror lobe or of glass.
+    /// Fraction of the surface area with a mirror lobe or of glass.
     pub specular_area_share: f64,
-    /// Smallest roughness of a rough lobe.
+    /// Minimum roughness α of a rough lobe.
     pub smallest_alpha: Option<f32>,
     /// True if a back side scatters or emits.
     pub two_sided: bool,
@@ -93,7 +93,7 @@ pub struct Requirements {
     pub triangles: usize,
     /// Number of triangles that emit.
     pub emitting_triangles: usize,
-    /// Number of area lights, point, spot and directional lights, and the environment with its discs.
+    /// Number of lights: area, point, spot and directional lights, and one for the environment with its discs.
     pub lights: usize,
     /// Surface area, in squares of the scene's unit.
     pub area: f64,
@@ -193,7 +193,7 @@ impl Requirements {
     }
 }
 
-/// True if the material reflects light in all directions, so that reflected light has to be stored.
+/// True if the material scatters light in all directions, so that reflected light is stored.
 fn stores_light(material: &Material) -> bool {
     let black = |r: &Reflectance| matches!(r, Reflectance::Constant(c) if c.max_element() <= 0.0);
     let glossy = |lobe: &Lobe| matches!(lobe, Lobe::Rough { scale, .. } | Lobe::Anisotropic { scale, .. } if !black(scale));

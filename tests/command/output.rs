@@ -1,7 +1,7 @@
 //! Files that a render leaves behind.
 
 use super::{Finished, Sandbox, read};
-use lightsplat::film::{ExrFile, Value, read_exr};
+use lightsplat::film::{ExrFile, Fact, read_exr};
 use std::process::Command;
 
 #[test]
@@ -22,7 +22,7 @@ fn a_render_writes_picture_preview_variance_and_where_it_comes_from() {
     assert_eq!(facts.text("version"), Some(env!("CARGO_PKG_VERSION")));
     assert_eq!(facts.text("scene_hash").map(str::len), Some(16));
     assert!(facts.number("render_seconds").unwrap() > 0.0 && facts.number("standard_error").unwrap() > 0.0);
-    assert!(matches!(facts.get("settings"), Some(Value::Text(json)) if json.contains("\"spp\":4")));
+    assert!(matches!(facts.get("settings"), Some(Fact::Text(json)) if json.contains("\"spp\":4")));
 }
 
 #[test]

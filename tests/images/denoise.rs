@@ -10,7 +10,7 @@ use lightsplat::view::{Framing, View};
 #[test]
 fn few_paths_denoised_are_far_nearer_to_the_reference() {
     for (scene, factor) in [("cornell", 8.0), ("knot", 3.0)] {
-        let session = Session::open(&own_path(scene), &LoadOptions::default()).unwrap();
+        let session = Session::open(&own_path(scene), &LoadOptions::default()).unwrap().session;
         let framing = Framing { resolution: Some([64, 64]), ..Framing::default() };
         let view = View::new(&session.cameras, &framing).unwrap();
         let frame = |spp, seed, denoise| {

@@ -6,7 +6,6 @@ use lightsplat::progress::Control;
 use lightsplat::readers::{LoadOptions, Loaded, load};
 use lightsplat::scene::Cameras;
 use lightsplat::session::{Frame, Goal, Remark, Session};
-use lightsplat::stats::Stats;
 use lightsplat::view::View;
 pub use lightsplat::world::testkit::*;
 use std::path::{Path, PathBuf};
@@ -67,9 +66,7 @@ pub fn room_file(scale: f64) -> String {
 /// A session over a scene, with its view.
 pub fn session(SceneAndView { scene, view }: SceneAndView) -> (Session, View) {
     let cameras = Cameras { still: view.camera, path: Vec::new(), resolution: view.window.film, crop: None };
-    let (warnings, repairs) = (Vec::new(), Default::default());
-    let loaded = Loaded { scene, cameras, warnings, repairs, hash: 0, generator: None };
-    (Session::of(loaded, Path::new("test"), Stats::new()).expect("the scene builds"), view)
+    (Session::of(scene, cameras).expect("the scene builds"), view)
 }
 
 /// The frame of a view by a method as it is set, denoised or not.

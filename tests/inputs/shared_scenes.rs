@@ -3,7 +3,7 @@
 //! The scenes are no part of this repository. They are looked for in `$LIGHTSPLAT_SHARED` and beside the checkout.
 //! Without them the tests are skipped with a message.
 
-use lightsplat::readers::{Level, LoadOptions, Loaded, load};
+use lightsplat::readers::{LoadOptions, Loaded, Severity, load};
 use std::path::PathBuf;
 
 /// Returns the folder of the public scenes; `None`, with a message, if there is none.
@@ -58,7 +58,7 @@ fn every_shared_scene_loads_whole() {
         assert_eq!(counts, (e.meshes, e.materials, e.textures, e.emitters), "{}", e.file);
         assert_eq!((scene.environment.is_some(), cameras.resolution), (e.environment, e.resolution));
         assert_eq!(scene.max_depth, Some(17));
-        assert!(warnings.iter().all(|w| w.level == Level::Note), "{warnings:?}");
+        assert!(warnings.iter().all(|w| w.severity == Severity::Note), "{warnings:?}");
         assert_eq!(warnings.len(), e.notes, "{warnings:?}");
         assert_eq!(repairs.out_of_range + repairs.not_finite + repairs.bad_uvs + repairs.bad_texels, 0);
     }

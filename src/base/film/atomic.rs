@@ -1,9 +1,8 @@
-//! Files that appear whole or not at all.
+//! Atomic writing of files.
 //!
-//! The bytes go to a temporary file in the target's folder, are flushed to the disk, and only then take the
-//! target's name; the folder is flushed last. A full disk, an error half-way or a kill at any moment leaves
-//! the target's former content. After a kill, a hidden `.NAME.*.tmp` may remain beside it, until the file is
-//! written again.
+//! The bytes go to a temporary file in the target's folder, which is flushed to the disk and then renamed to the
+//! target. The folder is flushed last. So a full disk, an error or a kill at any moment leaves the former content of
+//! the target. After a kill, a hidden `.NAME.*.tmp` may remain until the file is written again.
 
 use super::{ImageError, leftovers};
 use std::fs::{self, File};
@@ -11,7 +10,10 @@ use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 use tempfile::NamedTempFile;
 
-/// Checks that a file that is at `path` may be replaced: that not everybody is forbidden to write to it.
+/// Checks that a file at `path` is not write-protected.
+///
+/// # Errors
+/// If the file exists and nobody may write to it.
 pub fn check_unprotected(path: &Path) -> Result<(), ImageError> {
     let present = resolve(path).and_then(fs::metadata);
     if present.is_ok_and(|present| present.is_file() && present.permissions().readonly()) {
@@ -21,7 +23,13 @@ pub fn check_unprotected(path: &Path) -> Result<(), ImageError> {
     Ok(())
 }
 
-/// Checks, by creating and removing a temporary file, that `path` can be written; call it before hours of work.
+/// Checks that `path` can be written, by creating and removing a temporary file.
+///
+/// To be called before long work. Not guaranteed: that the disk still has room, or the folder its permissions, when the
+/// work is done.
+///
+/// # Errors
+/// If a file cannot be created there, or an existing file cannot be replaced.
 ///
 /// Not guaranteed: that the disk still has room, or the folder its permissions, when the work is done.
 pub fn check_writable(path: &Path) -> Result<(), ImageError> {
@@ -29,7 +37,10 @@ pub fn check_writable(path: &Path) -> Result<(), ImageError> {
     check_unprotected(path)
 }
 
-/// The same for a file that may stay as it is where it is there.
+/// Checks that a new file can be created at `path`, without checking the protection of an existing one.
+///
+/// # Errors
+/// If a file cannot be created there.
 pub fn check_place(path: &Path) -> Result<(), ImageError> {
     let refuse = |reason: String| Err(ImageError::Output { path: path.to_owned(), reason });
     if path.file_name().is_none() {
@@ -68,7 +79,7 @@ pub fn check_place(path: &Path) -> Result<(), ImageError> {
     Ok(())
 }
 
-/// Reason why a file that is there cannot give its name to a new one, though its folder takes new files.
+/// Returns the reason why an existing file cannot be replaced, though its folder accepts new files.
 #[cfg(unix)]
 fn irreplaceable(
     target: &Path,
@@ -84,15 +95,18 @@ fn irreplaceable(
     if folder.mode() & STICKY != 0 && is_others {
         return Some("it is another user's file in a folder where only its owner may replace it");
     }
-    // Lack of permission to write into the old file is another error, and no hindrance.
+    // Lack of permission to write into the old file is another error, which does not prevent replacing it.
     let opened = File::options().append(true).open(target);
     opened.is_err_and(|error| error.raw_os_error() == Some(EPERM)).then_some("it is marked as immutable")
 }
 
-/// Replaces the file at `path` by the output of `write`, whole or not at all.
+/// Replaces the file at `path` by the output of `write`, completely or not at all.
 ///
-/// A symbolic link is followed; the permissions of a file already there are kept. Where the new file cannot take its
-/// name, it stays beside it, and the error says where.
+/// Symbolic links are followed. The permissions of an existing file are kept. If the new file cannot be renamed to the
+/// target, it stays beside it, and the error names it.
+///
+/// # Errors
+/// If `write` fails, or the operating system does. The former content is then unchanged.
 pub fn write_atomically(
     path: &Path,
     write: impl FnOnce(&mut BufWriter<&File>) -> io::Result<()>,
@@ -119,7 +133,7 @@ pub fn write_atomically(
     sync_folder(&folder)
 }
 
-/// Gives a temporary file a name for good, which is not that of a temporary file.
+/// Renames a temporary file to a permanent name.
 fn keep(file: NamedTempFile) -> io::Result<PathBuf> {
     let (_, temporary) = file.keep()?;
     let kept = temporary.with_extension("kept");
@@ -133,7 +147,7 @@ fn temporary(target: &Path) -> io::Result<NamedTempFile> {
     #[cfg(unix)]
     {
         use std::os::unix::fs::PermissionsExt;
-        // Permissions of any newly created file, the umask applied; the default would be private to the user.
+        // Permissions of new files with the umask applied. The default would be private to the user.
         builder.permissions(fs::Permissions::from_mode(0o666));
     }
     let file = builder.tempfile_in(folder_of(target)).map_err(without_path)?;
@@ -141,14 +155,14 @@ fn temporary(target: &Path) -> io::Result<NamedTempFile> {
     Ok(file)
 }
 
-/// The same error without the name of the temporary file, which says nothing to people.
+/// Returns the error without the name of the temporary file.
 fn without_path(error: io::Error) -> io::Error {
     let text = error.to_string();
     let reason = text.split_once(" at path ").map_or(text.as_str(), |(reason, _)| reason);
     io::Error::new(error.kind(), reason)
 }
 
-/// Returns the file behind symbolic links, which stay, whether or not it is there.
+/// Returns the file behind symbolic links. The file need not exist.
 pub fn resolve(path: &Path) -> io::Result<PathBuf> {
     const MAX_LINKS: usize = 40;
     let mut target = path.to_owned();
@@ -156,7 +170,7 @@ pub fn resolve(path: &Path) -> io::Result<PathBuf> {
         match fs::read_link(&target) {
             Ok(next) => target = folder_of(&target).join(next),
             Err(_) => {
-                // The file need not be there, nor its folder.
+                // The file and its folder need not exist.
                 let folder = folder_of(&target);
                 let folder = fs::canonicalize(&folder).unwrap_or(folder);
                 return Ok(target.file_name().map_or(target.clone(), |name| folder.join(name)));
@@ -175,7 +189,7 @@ fn folder_of(path: &Path) -> PathBuf {
 
 fn sync_folder(folder: &Path) -> io::Result<()> {
     match File::open(folder).and_then(|folder| folder.sync_all()) {
-        // Some file systems cannot flush folders, and some folders cannot be opened; the file is in place.
+        // Some file systems cannot flush folders, and some folders cannot be opened. The file is in place anyway.
         Err(error) if error.kind() == io::ErrorKind::InvalidInput => Ok(()),
         Err(error) if error.kind() == io::ErrorKind::Unsupported => Ok(()),
         Err(error) if error.kind() == io::ErrorKind::PermissionDenied => Ok(()),
@@ -289,7 +303,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("picture.exr");
         let failed = write_atomically(&path, |file| {
-            // Meanwhile a folder takes the name.
+            // A folder takes the name meanwhile.
             fs::create_dir(&path)?;
             file.write_all(b"new")
         });

@@ -1,10 +1,10 @@
-//! Errors of picture files.
+//! Errors of image files.
 
 use std::io;
 use std::path::PathBuf;
 use thiserror::Error;
 
-/// An error reading, writing or comparing pictures.
+/// An error of reading, writing or comparing images.
 #[derive(Debug, Error)]
 pub enum ImageError {
     /// The file cannot be read.
@@ -12,10 +12,10 @@ pub enum ImageError {
     Read {
         /// The file.
         path: PathBuf,
-        /// Error of the operating system; no `source`, since the message holds it.
+        /// Error of the operating system; no `source`, because the message contains it.
         error: io::Error,
     },
-    /// The file is not a supported OpenEXR picture.
+    /// The file is not a supported OpenEXR image.
     #[error("{} is not a readable OpenEXR picture: {reason}", path.display())]
     Decode {
         /// The file.
@@ -23,17 +23,17 @@ pub enum ImageError {
         /// Description of the error.
         reason: String,
     },
-    /// The picture has no colour of the name asked for.
+    /// The image has no colour of the requested name.
     #[error("{} has no {wanted}; its channels are: {}", path.display(), channels.join(", "))]
     NoColor {
         /// The file.
         path: PathBuf,
-        /// Name asked for.
+        /// Requested name.
         wanted: String,
         /// Names of its channels.
         channels: Vec<String>,
     },
-    /// A picture cannot be written to the path asked for; found before rendering.
+    /// An image cannot be written to the requested path; found before rendering.
     #[error("cannot write {}: {reason}", path.display())]
     Output {
         /// The file.
@@ -41,15 +41,15 @@ pub enum ImageError {
         /// Reason and remedy.
         reason: String,
     },
-    /// Writing failed; the file's former content is untouched.
+    /// Writing failed. The file's former content is unchanged.
     #[error("writing {} failed: {error}; the file, if there was one, is as it was before", path.display())]
     Write {
         /// The file.
         path: PathBuf,
-        /// Error of the operating system; no `source`, since the message holds it.
+        /// Error of the operating system; no `source`, because the message contains it.
         error: io::Error,
     },
-    /// The images of one film, or two to compare, differ in size.
+    /// Images that belong together differ in size.
     #[error("{what}: {}x{} and {}x{} pixels", sizes[0][0], sizes[0][1], sizes[1][0], sizes[1][1])]
     Size {
         /// Description of the images.

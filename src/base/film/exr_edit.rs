@@ -1,14 +1,17 @@
-//! Changes of an OpenEXR file in memory that leave all else in it as it is: parts, channels of any type, attributes.
+//! Edits of an OpenEXR file in memory. They leave everything else unchanged: parts, channels of any type, attributes.
 
 use super::exr_read::text;
 use super::exr_write::{name_of, set, write};
-use super::{ExrFile, Image, ImageError, Value};
+use super::{ExrFile, Fact, Image, ImageError};
 use crate::math::luminance;
 use ::exr::prelude::{AnyChannel, AnyChannels, FlatSamples, Text, WritableImage};
 use std::path::Path;
 
 impl ExrFile {
-    /// Puts an image of the same size in the place of [`ExrFile::color`], which becomes layer `kept`, if named.
+    /// Replaces [`ExrFile::color`] by an image of the same size. The old colour becomes the layer `kept`, if named.
+    ///
+    /// # Errors
+    /// If the file has no colour, or the sizes differ.
     pub fn replace_color(&mut self, image: &Image, kept: Option<&str>) -> Result<(), ImageError> {
         let size = self.color()?.size();
         if image.size() != size {
@@ -33,7 +36,7 @@ impl ExrFile {
         Ok(())
     }
 
-    /// Renames the layer `from` to `to`, where there is one.
+    /// Renames the layer `from` to `to`, if it exists.
     pub fn rename_layer(&mut self, from: &str, to: &str) {
         for part in &mut self.parts.layer_data {
             let mut list = std::mem::take(&mut part.channel_data.list);
@@ -49,20 +52,20 @@ impl ExrFile {
     }
 
     /// Sets a fact of [`ExrFile::metadata`].
-    pub fn set(&mut self, key: &str, value: impl Into<Value>) {
+    pub fn set(&mut self, key: &str, value: impl Into<Fact>) {
         if let Some(part) = self.parts.layer_data.first_mut() {
             set(&mut part.attributes, key, &value.into());
         }
     }
 
-    /// Removes a fact, where there is one.
+    /// Removes a fact, if it exists.
     pub fn remove_fact(&mut self, key: &str) {
         if let Some(part) = self.parts.layer_data.first_mut() {
             part.attributes.other.remove(&name_of(key));
         }
     }
 
-    /// Removes the layer `name`, where there is one.
+    /// Removes the layer `name`, if it exists.
     pub fn remove_layer(&mut self, name: &str) {
         for part in &mut self.parts.layer_data {
             part.channel_data.list.retain(|channel| {
@@ -72,7 +75,7 @@ impl ExrFile {
         }
     }
 
-    /// Adds a channel of whole numbers of the size of the first part.
+    /// Adds a channel of unsigned integers of the size of the first part.
     pub fn add_numbers(&mut self, name: &str, numbers: Vec<u32>) {
         if let Some(part) = self.parts.layer_data.first_mut() {
             let mut list = std::mem::take(&mut part.channel_data.list);
@@ -82,7 +85,7 @@ impl ExrFile {
         }
     }
 
-    /// Gives a fact another key, where there is one.
+    /// Renames the key of a fact, if it exists.
     pub fn rename_fact(&mut self, from: &str, to: &str) {
         let Some(part) = self.parts.layer_data.first_mut() else { return };
         if let Some(value) = part.attributes.other.remove(&name_of(from)) {
@@ -90,13 +93,16 @@ impl ExrFile {
         }
     }
 
-    /// Writes the file to `path`, whole or not at all.
+    /// Writes the file to `path`, completely or not at all.
+    ///
+    /// # Errors
+    /// If writing fails.
     pub fn write(&self, path: &Path) -> Result<(), ImageError> {
         write(path, |bytes| self.parts.write().to_buffered(bytes))
     }
 }
 
-/// Name of a layer's channel.
+/// Returns the name of a layer's channel.
 fn name_in(layer: &str, channel: &str) -> Text {
     Text::from_slice_unchecked(format!("{layer}.{channel}").as_bytes())
 }

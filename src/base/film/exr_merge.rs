@@ -1,20 +1,20 @@
-//! Several pictures of one view, as weighted means of their channels.
+//! Weighted means of several images of one view, channel by channel.
 
 use super::exr_read::text;
 use super::{ExrFile, ImageError};
 use ::exr::prelude::FlatSamples;
 
-/// Weight of a picture.
+/// Weight of an image.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Weight {
-    /// The same for all pixels.
+    /// One weight for all pixels.
     Whole(f64),
-    /// By pixel.
+    /// One weight per pixel.
     ByPixel(Vec<u32>),
 }
 
 impl Weight {
-    /// The weight of a pixel.
+    /// Returns the weight of a pixel.
     pub fn of(&self, pixel: usize) -> f64 {
         match self {
             Weight::Whole(weight) => *weight,
@@ -24,11 +24,13 @@ impl Weight {
 }
 
 impl ExrFile {
-    /// Puts the weighted mean of the pictures in the place of every channel of floats, and of the layers of `variances`
-    /// the variance of that mean; 0 where nothing has weight. Ids stay. All pictures have the same channels and size.
+    /// Replaces every float channel by the weighted mean of the images. Layers of `variances` become the variance of
+    /// that mean.
+    ///
+    /// Pixels without weight are 0. Ids stay unchanged.
     ///
     /// # Errors
-    /// If they have not.
+    /// If channels or sizes differ.
     pub fn merge(
         &mut self,
         others: &[ExrFile],
@@ -64,7 +66,7 @@ impl ExrFile {
         Ok(())
     }
 
-    /// Sizes of the parts, and names of their channels.
+    /// Returns the sizes of the parts and the names of their channels.
     fn shape(&self) -> Vec<(usize, usize, Vec<String>)> {
         let parts = self.parts.layer_data.iter();
         let names = |part: &::exr::prelude::Layer<_>| -> Vec<String> {

@@ -1,16 +1,17 @@
-//! The order of attributes in the headers of an OpenEXR file: by name, so that equal pictures are equal bytes. The
-//! format leaves the order open, and the library that writes it draws it at random.
+//! Order of attributes in the headers of an OpenEXR file: by name, so that equal images give equal bytes.
 //!
-//! Layout (OpenEXR file layout, "Header"): magic number and version of four bytes each; then headers of attributes,
-//! each its name and type, both ended by a zero, the size of its value in four bytes, little endian, and the value. A
-//! zero ends a header; in files of several parts, another ends the headers.
+//! The format allows any order, and the library that writes it uses a random one.
+//!
+//! Layout (OpenEXR file layout, "Header"): magic number and version have four bytes each. Headers of attributes follow.
+//! An attribute consists of name and type, both ended by a zero, the size of its value in four bytes, little endian,
+//! and the value. A zero ends a header. In files of several parts, another zero ends the headers.
 
-/// Bytes of magic number and version.
+/// Number of bytes of magic number and version.
 const PREFACE: usize = 8;
-/// Bit of the version that says that there are several parts.
+/// Bit of the version that marks several parts.
 const MULTIPART: u8 = 0x10;
 
-/// Sorts the attributes of every header in the bytes of a file. A file that is not understood stays as it is.
+/// Sorts the attributes of every header in the bytes of a file. Invalid files stay unchanged.
 pub(super) fn sort_attributes(file: &mut [u8]) {
     let mut at = PREFACE;
     let several = file.get(5).is_some_and(|flags| flags & MULTIPART != 0);
@@ -29,7 +30,7 @@ pub(super) fn sort_attributes(file: &mut [u8]) {
     }
 }
 
-/// Ends of the attributes of the header that starts at `at`.
+/// Returns the ends of the attributes of the header that starts at `at`.
 fn attributes(file: &[u8], mut at: usize) -> Option<Vec<usize>> {
     let mut ends = Vec::new();
     let past_zero = |from: usize| Some(from + file.get(from..)?.iter().position(|byte| *byte == 0)? + 1);
@@ -66,7 +67,7 @@ mod tests {
                 sort_attributes(&mut bytes);
                 assert_eq!(bytes, file([1, 2, 0]));
             }
-            // Damaged files stay as they are.
+            // Damaged files stay unchanged.
             for length in 0..file([0, 1, 2]).len() - 20 {
                 let whole = file([0, 1, 2]);
                 let mut cut = whole[..length].to_vec();

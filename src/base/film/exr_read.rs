@@ -1,7 +1,7 @@
-//! Reads the colours of any flat OpenEXR file: half, float or integer channels, layered names, several parts.
+//! Reader of flat OpenEXR files: half, float or integer channels, layered names, several parts.
 
 use super::exr_write::PREFIX;
-use super::{CameraMatrices, Image, ImageError, Metadata, Value};
+use super::{CameraMatrices, Fact, Image, ImageError, Metadata};
 use crate::film::Window;
 use crate::math::Rgb;
 use ::exr::meta::header::Header;
@@ -12,9 +12,9 @@ use std::fs::{self, File};
 use std::io::{self, BufReader};
 use std::path::{Path, PathBuf};
 
-/// Names of a picture's channels.
+/// Names of the colour channels of an image, by preference.
 const COLOR: [[&str; 3]; 2] = [["R", "G", "B"], ["Y"; 3]];
-/// Names of a layer's channels.
+/// Names of the colour channels of a layer, by preference.
 const LAYER: [[&str; 3]; 3] = [["R", "G", "B"], ["X", "Y", "Z"], ["Y"; 3]];
 
 /// An OpenEXR file in memory.
@@ -24,17 +24,20 @@ pub struct ExrFile {
     pub(super) parts: FlatImage,
 }
 
-/// Place of three channels, which may be the same, in a file.
+/// Indices of three channels in a file. The channels may be equal.
 #[derive(Clone, Copy)]
-pub(super) struct Place {
-    /// Number of the part.
+pub(super) struct ChannelPlace {
+    /// Index of the part.
     pub part: usize,
-    /// Numbers of the channels in it.
+    /// Indices of the channels in the part.
     pub channels: [usize; 3],
 }
 
 impl ExrFile {
     /// Reads all channels of the file at `path`.
+    ///
+    /// # Errors
+    /// If the file cannot be read, or is no supported OpenEXR image.
     pub fn read(path: &Path) -> Result<ExrFile, ImageError> {
         let fail = |error| ImageError::Read { path: path.to_owned(), error };
         // Opening a pipe would wait for its writer.
@@ -60,14 +63,17 @@ impl ExrFile {
         Ok(ExrFile { path: path.to_owned(), parts })
     }
 
-    /// The picture's colour: `R`, `G`, `B` where there are such channels, else the luminance `Y` as grey,
-    /// else the colours of the only layer that has any, or of Blender's `Combined`.
+    /// Returns the colour of the image: `R`, `G`, `B`, else the luminance `Y` as grey, else the colour of the only
+    /// layer with one, or of Blender's `Combined`.
+    ///
+    /// # Errors
+    /// If there is no colour.
     pub fn color(&self) -> Result<Image, ImageError> {
         self.join(self.color_place()?)
     }
 
-    /// Place of [`ExrFile::color`].
-    pub(super) fn color_place(&self) -> Result<Place, ImageError> {
+    /// Returns the channels of [`ExrFile::color`].
+    pub(super) fn color_place(&self) -> Result<ChannelPlace, ImageError> {
         let layer = || {
             let layers = self.layers();
             let combined = |layer: &&String| layer.rsplit('.').next() == Some("Combined");
@@ -77,13 +83,21 @@ impl ExrFile {
         self.find("", &COLOR).or_else(layer).ok_or_else(|| self.missing("colour (R, G, B or Y)".to_owned()))
     }
 
-    /// The values of layer `name`: the channels `name.R`, `name.G`, `name.B`, or X, Y, Z, or a part of that name;
-    /// the one channel `name.Y` or `name` as grey.
+    /// Returns the values of layer `name`: the channels `name.R`, `name.G`, `name.B`, or X, Y, Z, or a part of that
+    /// name.
+    ///
+    /// A single channel `name.Y` or `name` is read as grey.
+    ///
+    /// # Errors
+    /// If there are no such channels.
     pub fn layer(&self, name: &str) -> Result<Image, ImageError> {
         self.join(self.find(name, &LAYER).ok_or_else(|| self.missing(format!("layer `{name}`")))?)
     }
 
-    /// The whole numbers of the channel `name`.
+    /// Returns the unsigned integers of the channel `name`.
+    ///
+    /// # Errors
+    /// If there is no such channel.
     pub fn numbers(&self, name: &str) -> Option<Image<u32>> {
         let part = self.parts.layer_data.first()?;
         let channel = part.channel_data.list.iter().find(|channel| text(&channel.name) == name)?;
@@ -96,10 +110,10 @@ impl ExrFile {
         }
     }
 
-    /// Returns the names of all layers that have a colour, in the file's order; "" is the picture's own.
+    /// Returns the names of all layers with a colour, in the file's order. The image itself has the name "".
     pub fn layers(&self) -> Vec<String> {
         let (mut names, channels) = (Vec::new(), self.channels());
-        // Y beside X is a coordinate, not a luminance.
+        // Y with X is a coordinate, not a luminance.
         let is_vector = |layer: &str| channels.iter().any(|name| *name == format!("{layer}.X"));
         for name in &channels {
             let layer = match name.rsplit_once('.') {
@@ -115,7 +129,7 @@ impl ExrFile {
         names
     }
 
-    /// The window that the first part covers within the whole film.
+    /// Returns the window that the first part covers within the whole film.
     pub fn window(&self) -> Window {
         let display = self.parts.attributes.display_window;
         let film = [display.size.0 as u32, display.size.1 as u32];
@@ -129,7 +143,7 @@ impl ExrFile {
         }
     }
 
-    /// The camera that took the picture, where the file states it.
+    /// Returns the camera of the image, if the file states it.
     pub fn camera(&self) -> Option<CameraMatrices> {
         let attributes = &self.parts.layer_data.first()?.attributes;
         let (world_to_camera, world_to_ndc) =
@@ -140,14 +154,14 @@ impl ExrFile {
     /// Returns the metadata that this program wrote, sorted by key; empty for files of other programs.
     pub fn metadata(&self) -> Metadata {
         let attributes = self.parts.layer_data.first().map(|part| &part.attributes.other);
-        let mut facts: Vec<(String, Value)> = attributes
+        let mut facts: Vec<(String, Fact)> = attributes
             .into_iter()
             .flatten()
             .filter_map(|(name, value)| {
                 let key = text(name).strip_prefix(PREFIX)?.to_owned();
                 match value {
-                    AttributeValue::Text(words) => Some((key, Value::Text(text(words)))),
-                    AttributeValue::F64(number) => Some((key, Value::Number(*number))),
+                    AttributeValue::Text(words) => Some((key, Fact::Text(text(words)))),
+                    AttributeValue::F64(number) => Some((key, Fact::Number(*number))),
                     _ => None,
                 }
             })
@@ -158,7 +172,7 @@ impl ExrFile {
         metadata
     }
 
-    /// The names of all channels, in the file's order, with those of their parts.
+    /// Returns the names of all channels, with those of their parts, in the file's order.
     pub fn channels(&self) -> Vec<String> {
         let mut names = Vec::new();
         for part in &self.parts.layer_data {
@@ -171,9 +185,9 @@ impl ExrFile {
         names
     }
 
-    /// The channels of `layer` by the first of these names that it has all of, or the one channel that is named as
-    /// it is.
-    fn find(&self, layer: &str, names: &[[&str; 3]]) -> Option<Place> {
+    /// Returns the channels of `layer`: the first three of `names` that all exist, or the single channel called
+    /// `layer`.
+    fn find(&self, layer: &str, names: &[[&str; 3]]) -> Option<ChannelPlace> {
         let prefix = if layer.is_empty() { String::new() } else { format!("{layer}.") };
         self.parts.layer_data.iter().enumerate().find_map(|(index, part)| {
             let own = part_name(part);
@@ -189,11 +203,11 @@ impl ExrFile {
                     _ => None,
                 });
             let channels = three.or_else(|| channel(layer).map(|scalar| [scalar; 3]))?;
-            Some(Place { part: index, channels })
+            Some(ChannelPlace { part: index, channels })
         })
     }
 
-    fn join(&self, place: Place) -> Result<Image, ImageError> {
+    fn join(&self, place: ChannelPlace) -> Result<Image, ImageError> {
         let decode = |reason: String| ImageError::Decode { path: self.path.clone(), reason };
         let part = &self.parts.layer_data[place.part];
         let channels = place.channels.map(|index| &part.channel_data.list[index]);
@@ -216,13 +230,17 @@ impl ExrFile {
     }
 }
 
-/// Reads the colour of the OpenEXR picture at `path`; see [`ExrFile::color`].
+/// Reads the colour of the OpenEXR image at `path`; see [`ExrFile::color`].
+///
+/// # Errors
+/// If the file cannot be read, or has no colour.
 pub fn read_exr(path: &Path) -> Result<Image, ImageError> {
     ExrFile::read(path)?.color()
 }
 
-/// Asks for the memory that the header claims to need, and returns it: a damaged header must be an error, but
-/// the reader would abort the process when it cannot have its terabytes.
+/// Checks that the memory exists that the header claims to need, by allocating and freeing it.
+///
+/// The OpenEXR library would abort the process on a damaged header with a size of terabytes.
 fn check_memory(headers: &[Header]) -> Result<(), String> {
     let mut bytes = 0usize;
     for header in headers {

@@ -1,4 +1,4 @@
-//! Files written are read back whole, in any shape; files of other programs are read.
+//! Tests: written files are read back completely, in any shape; files of other programs are read.
 
 use super::*;
 use crate::film::Window;
@@ -81,7 +81,7 @@ fn a_film_whose_images_differ_in_size_is_refused_and_the_old_file_kept() {
     assert_eq!(std::fs::read_to_string(&path).unwrap(), "old");
 }
 
-/// Writes a file of one part with these channels of 2x2 pixels, as another program might.
+/// Writes a file of one part with channels of 2x2 pixels, as another program may.
 fn foreign(path: &Path, part: Option<&str>, channels: Vec<(&str, FlatSamples)>) {
     let list = channels.into_iter().map(|(name, samples)| AnyChannel::new(name, samples)).collect();
     let attributes = LayerAttributes { layer_name: part.map(Text::from), ..LayerAttributes::default() };

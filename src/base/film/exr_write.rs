@@ -1,24 +1,27 @@
-//! OpenEXR files: one part, 32-bit float, layers as dotted channels, metadata as attributes.
+//! Writer of OpenEXR files: one part, 32-bit float, layers as dotted channels, metadata as attributes.
 //!
-//! The colour is `R`, `G`, `B`; for layers see [`super::layer`]. A cropped picture has its window as data window
-//! within the whole film as display window. Compression is RLE: lossless, and on rendered floats within 3 % of ZIP
-//! in size at a tenth of its time.
+//! The colour is `R`, `G`, `B`; for layers see [`super::layer`]. A cropped image has its window as data window, and the
+//! whole film as display window. Compression is RLE, which is lossless. On rendered floats its files are within 3 % of
+//! ZIP's size.
 //!
 //! Units: radiance W/(sr m²), linear, Rec. 709 primaries (stated in the file).
 
 use super::exr_order::sort_attributes;
-use super::{Film, ImageError, Metadata, Pixels, Value, atomic};
+use super::{Fact, Film, ImageError, Metadata, Pixels, atomic};
 use ::exr::prelude::*;
 use std::io::{self, Cursor, Write as _};
 use std::path::Path;
 
-/// Prefix of our attributes.
+/// Prefix of the program's own attributes.
 pub(super) const PREFIX: &str = "lightsplat.";
 
-/// Writes `film` to `path`, whole or not at all.
+/// Writes `film` to `path`, completely or not at all.
 ///
-/// A picture never contains NaN or infinity: see [`Film::remove_nonfinite`], which the caller runs first so
-/// that it can report the number; here they are an error in a debug build and 0 otherwise.
+/// Images must not contain NaN or infinity. The caller runs [`Film::remove_nonfinite`] first, to report their number.
+/// Here they are a panic in a debug build, and 0 otherwise.
+///
+/// # Errors
+/// If the sizes of images differ, or writing fails.
 pub fn write_exr(path: &Path, film: &Film) -> std::result::Result<(), ImageError> {
     film.check_sizes()?;
     let window = film.window;
@@ -50,7 +53,7 @@ pub fn write_exr(path: &Path, film: &Film) -> std::result::Result<(), ImageError
     write(path, |bytes| picture.write().to_buffered(bytes))
 }
 
-/// Writes the file that `encode` makes, its attributes in order, whole or not at all.
+/// Writes the output of `encode` with sorted attributes, completely or not at all.
 pub(super) fn write(
     path: &Path,
     encode: impl FnOnce(&mut Cursor<Vec<u8>>) -> std::result::Result<(), Error>,
@@ -65,7 +68,7 @@ pub(super) fn write(
     .map_err(|error| ImageError::Write { path: path.to_owned(), error })
 }
 
-/// Appends the three channels of a layer of that name.
+/// Appends the three channels of a layer.
 fn push(
     channels: &mut SmallVec<[AnyChannel<FlatSamples>; 4]>,
     layer: &str,
@@ -109,16 +112,16 @@ fn add(attributes: &mut LayerAttributes, metadata: &Metadata) {
 }
 
 /// Sets the attribute of a fact.
-pub(super) fn set(attributes: &mut LayerAttributes, key: &str, value: &Value) {
+pub(super) fn set(attributes: &mut LayerAttributes, key: &str, value: &Fact) {
     let value = match value {
-        // OpenEXR strings are UTF-8; the crate's checked constructors know Latin-1 only.
-        Value::Text(text) => AttributeValue::Text(Text::from_slice_unchecked(text.as_bytes())),
-        Value::Number(number) => AttributeValue::F64(*number),
+        // OpenEXR strings are UTF-8, but the crate's checked constructors accept Latin-1 only.
+        Fact::Text(text) => AttributeValue::Text(Text::from_slice_unchecked(text.as_bytes())),
+        Fact::Number(number) => AttributeValue::F64(*number),
     };
     attributes.other.insert(name_of(key), value);
 }
 
-/// Name of the attribute of a fact.
+/// Returns the name of a fact's attribute.
 pub(super) fn name_of(key: &str) -> Text {
     Text::from_slice_unchecked(format!("{PREFIX}{key}").as_bytes())
 }

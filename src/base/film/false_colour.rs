@@ -1,10 +1,10 @@
-//! Layers of data as pictures: numbers in magma colours, directions as hues, points over the picture.
+//! Display of data layers: numbers in magma colours, directions as hues, points over the image.
 
 use super::{Image, Layer, Pixels, Preview, metrics, tone};
 use crate::math::Rgb;
 use std::f32::consts::TAU;
 
-/// Display bytes of a layer of a picture exposed by `factor`, if it is meant to be shown.
+/// Returns the display bytes of a layer, if it has a preview. `factor` is the exposure of the image.
 pub fn show(layer: &Layer, picture: &Image, factor: f32) -> Option<Vec<u8>> {
     let preview = layer.preview?;
     Some(match (&layer.pixels, preview) {
@@ -19,7 +19,7 @@ pub fn show(layer: &Layer, picture: &Image, factor: f32) -> Option<Vec<u8>> {
     })
 }
 
-/// Red where the first, green where the second channel is above 0, over the picture at half its brightness.
+/// Draws points over the image at half brightness: red if the first channel is above 0, green if the second is.
 fn points(layer: &Image, picture: &Image, factor: f32) -> Vec<u8> {
     let mut bytes = tone::to_srgb8(picture, factor);
     for (pixel, mark) in bytes.chunks_exact_mut(3).zip(&layer.pixels) {
@@ -34,7 +34,7 @@ fn points(layer: &Image, picture: &Image, factor: f32) -> Vec<u8> {
     bytes
 }
 
-/// Magma colours from 0 to the 99th percentile of the positive values.
+/// Maps values to magma colours, from 0 to the 99th percentile of the positive values.
 fn numbers(values: impl Iterator<Item = f32>) -> Vec<u8> {
     let lut = metrics::magma();
     let values: Vec<f32> = values.collect();
@@ -46,8 +46,7 @@ fn numbers(values: impl Iterator<Item = f32>) -> Vec<u8> {
     values.iter().flat_map(colour).collect()
 }
 
-/// Hues of the directions, in the plane of the two axes along which the layer varies most; brightness is the
-/// length, saturating.
+/// Maps directions to hues, in the plane of the two axes of greatest variation. The brightness is the saturated length.
 fn hues(layer: &Image) -> Vec<u8> {
     let mean = layer.pixels.iter().map(|p| p.length()).sum::<f32>() / layer.pixels.len().max(1) as f32;
     let squares = layer.pixels.iter().fold(Rgb::ZERO, |sum, p| sum + *p * *p);

@@ -1,9 +1,8 @@
-//! A picture of the differences of two pictures: test, reference and the error in magma colours, next to each
-//! other.
+//! Comparison image: test, reference and the error in magma colours, next to each other.
 
 use super::{Image, metrics, tone};
 
-/// A display picture: 8-bit sRGB, row-major, three bytes a pixel.
+/// A display image: 8-bit sRGB, row-major, three bytes per pixel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Panel {
     /// Columns.
@@ -14,10 +13,11 @@ pub struct Panel {
     pub bytes: Vec<u8>,
 }
 
-/// Lays out `test`, `reference` and `error` (one value a pixel, 0 to 1, larger ones clipped): side by side, or
-/// one above the other where the pictures are more than twice as wide as high.
+/// Lays out `test`, `reference` and `error` (one value per pixel, 0 to 1, larger ones clipped).
 ///
-/// All three must have the same size.
+/// The three are side by side, or one above the other if they are more than twice as wide as high.
+///
+/// All three must have one size.
 pub fn heatmap(test: &Image, reference: &Image, error: &[f32], exposure_factor: f32) -> Panel {
     let shown =
         [tone::to_srgb8(test, exposure_factor), tone::to_srgb8(reference, exposure_factor), colours(error)];
@@ -33,7 +33,7 @@ pub fn heatmap(test: &Image, reference: &Image, error: &[f32], exposure_factor: 
     Panel { width: 3 * width, height, bytes }
 }
 
-/// Errors from 0 to 1 (larger ones clipped) in magma colours: three bytes a pixel.
+/// Maps errors from 0 to 1 (larger ones clipped) to magma colours: three bytes per pixel.
 pub fn colours(error: &[f32]) -> Vec<u8> {
     let lut = metrics::magma();
     // `as` saturates and turns NaN into 0, so the index is always within the 256 colours.

@@ -1,4 +1,4 @@
-//! Layers: images beside a picture's colour, each of a type that names its channels.
+//! Layers: further images of an image file. The type of a layer names its channels.
 //!
 //! | type | channels of layer `name` |
 //! |---|---|
@@ -10,78 +10,78 @@
 use super::Image;
 use crate::math::Rgb;
 
-/// Layer of the samples of each pixel, where they differ.
+/// Layer of the number of samples per pixel, if it varies.
 pub const SAMPLES: &str = "samples";
 
-/// An image beside the colour.
+/// A further image of an image file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Layer {
     /// Name in the file.
     pub name: String,
-    /// Values by pixel.
+    /// Value of each pixel.
     pub pixels: Pixels,
-    /// Display as a picture of its own, if the layer is meant to have one.
+    /// Display as an image of its own, if there is one.
     pub preview: Option<Preview>,
 }
 
 /// Values of a layer by their type.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Pixels {
-    /// Radiances, albedos, or up to three numbers that belong together.
+    /// Radiances, albedos, or triples of related numbers.
     Color(Image),
     /// Vectors and points in world space.
     Vector(Image),
     /// Numbers.
     Scalar(Image<f32>),
-    /// Names of things: never averaged, 0 for nothing.
+    /// Ids of objects; never averaged. 0 stands for no object.
     Id(Image<u32>),
 }
 
 /// Display of a layer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Preview {
-    /// As radiance, exposed as the picture is.
+    /// Radiance, with the exposure of the image.
     Exposed,
-    /// Points over the darkened picture: red where the first, green where the second channel is above 0.
+    /// Points over the darkened image: red if the first channel is above 0, green if the second is.
     Marks,
-    /// Directions in the plane of the two axes along which they vary most, as hues.
+    /// Hues of directions, in the plane of the two axes of greatest variation.
     Hues,
-    /// Numbers in magma colours: the channels' weighted sum, less an offset.
+    /// Magma colours of the channels' weighted sum minus an offset.
     Magma {
         /// Weights of the channels.
         weights: Rgb,
-        /// Offset taken off the sum.
+        /// Offset subtracted from the sum.
         offset: f32,
     },
 }
 
 impl Layer {
-    /// A layer of colours.
+    /// Creates a layer of colours.
     pub fn color(name: impl Into<String>, image: Image) -> Layer {
         Layer { name: name.into(), pixels: Pixels::Color(image), preview: None }
     }
 
-    /// A layer of vectors.
+    /// Creates a layer of vectors.
     pub fn vector(name: impl Into<String>, image: Image) -> Layer {
         Layer { name: name.into(), pixels: Pixels::Vector(image), preview: None }
     }
 
-    /// A layer of numbers.
+    /// Creates a layer of numbers.
     pub fn scalar(name: impl Into<String>, image: Image<f32>) -> Layer {
         Layer { name: name.into(), pixels: Pixels::Scalar(image), preview: None }
     }
 
-    /// A layer of ids.
+    /// Creates a layer of ids.
     pub fn id(name: impl Into<String>, image: Image<u32>) -> Layer {
         Layer { name: name.into(), pixels: Pixels::Id(image), preview: None }
     }
 
-    /// The same layer, shown as a picture of its own.
+    /// Returns the layer with a display of its own.
     pub fn shown(self, preview: Preview) -> Layer {
         Layer { preview: Some(preview), ..self }
     }
 
-    /// Values of three channels by pixel, where the layer has as many.
+    /// Returns the values of layers with three channels.
     pub fn triples(&self) -> Option<&Image> {
         match &self.pixels {
             Pixels::Color(image) | Pixels::Vector(image) => Some(image),
@@ -89,7 +89,7 @@ impl Layer {
         }
     }
 
-    /// Width and height, and the number of pixels held.
+    /// Returns width and height, and the number of pixels.
     pub(super) fn size(&self) -> ([u32; 2], usize) {
         match &self.pixels {
             Pixels::Color(image) | Pixels::Vector(image) => image.size(),
@@ -98,7 +98,7 @@ impl Layer {
         }
     }
 
-    /// Replaces every channel that is not finite by 0 and returns their number.
+    /// Replaces every non-finite channel by 0; returns their number.
     pub(super) fn remove_nonfinite(&mut self) -> u64 {
         match &mut self.pixels {
             Pixels::Color(image) | Pixels::Vector(image) => image.remove_nonfinite(),

@@ -1,47 +1,50 @@
-//! Content of a picture file: named layers over one window of the film, and metadata.
+//! Content of an image file: named layers over one window of the film, and metadata.
 
 use super::{Image, ImageError, Layer};
 use crate::film::Window;
 
-/// The picture of one frame with everything that is written beside the colour.
+/// The image of one frame, with its layers and metadata.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Film {
     /// The part of the film that the layers cover.
     pub window: Window,
-    /// Radiance by pixel.
+    /// Radiance of each pixel, W/(sr m²).
     pub color: Image,
     /// Further images.
     pub layers: Vec<Layer>,
-    /// The camera that took the picture, if there was one.
+    /// Camera of the image, if there is one.
     pub camera: Option<CameraMatrices>,
-    /// Metadata: settings, statistics and scene of the picture.
+    /// Metadata: settings, statistics and scene of the image.
     pub metadata: Metadata,
 }
 
-/// The standard attributes `worldToCamera` and `worldToNDC` of OpenEXR: matrices in rows, for row vectors that they
-/// are multiplied to from the right, as Imath defines it. The world is the scene file's.
+/// Standard attributes `worldToCamera` and `worldToNDC` of OpenEXR. Matrices are stored by rows and multiply row
+/// vectors from the right, as in Imath. World coordinates are those of the scene file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CameraMatrices {
-    /// To coordinates about the camera: x to the right, y up, z forward.
+    /// Transform to camera coordinates: x to the right, y up, z forward.
     pub world_to_camera: [f32; 16],
-    /// To the film, once divided by the fourth coordinate: x and y from 0 to 1, from the top left to the bottom right
-    /// corner; z is the inverse of the depth.
+    /// Transform to the film, before division by the fourth coordinate. x and y range from 0 to 1, from the top left to
+    /// the bottom right corner; z is the inverse depth.
     pub world_to_ndc: [f32; 16],
 }
 
 impl Film {
-    /// A film of one complete image.
+    /// Creates a film of one complete image.
     pub fn new(color: Image) -> Film {
         let window = Window::whole([color.width, color.height]);
         Film { window, color, layers: Vec::new(), camera: None, metadata: Metadata::default() }
     }
 
-    /// Replaces every channel that is not finite by 0 in all images and returns their number.
+    /// Replaces every non-finite channel of all images by 0; returns their number.
     pub fn remove_nonfinite(&mut self) -> u64 {
         self.color.remove_nonfinite() + self.layers.iter_mut().map(Layer::remove_nonfinite).sum::<u64>()
     }
 
-    /// Fails unless every image has the window's size and the window lies on the film.
+    /// Checks that every image has the window's size and that the window lies on the film.
+    ///
+    /// # Errors
+    /// If not.
     pub fn check_sizes(&self) -> Result<(), ImageError> {
         let window = [self.window.width, self.window.height];
         if !self.window.is_valid() {
@@ -59,40 +62,40 @@ impl Film {
     }
 }
 
-/// Ordered facts about a picture; keys are written as `lightsplat.KEY`.
+/// Facts about an image, in order. Keys are written as `lightsplat.KEY`.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Metadata(Vec<(String, Value)>);
+pub struct Metadata(Vec<(String, Fact)>);
 
-/// One fact.
+/// A fact about an image.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Value {
-    /// Words.
+pub enum Fact {
+    /// Text.
     Text(String),
-    /// A quantity.
+    /// Number.
     Number(f64),
 }
 
-impl From<&str> for Value {
-    fn from(text: &str) -> Value {
-        Value::Text(text.to_owned())
+impl From<&str> for Fact {
+    fn from(text: &str) -> Fact {
+        Fact::Text(text.to_owned())
     }
 }
 
-impl From<String> for Value {
-    fn from(text: String) -> Value {
-        Value::Text(text)
+impl From<String> for Fact {
+    fn from(text: String) -> Fact {
+        Fact::Text(text)
     }
 }
 
-impl From<f64> for Value {
-    fn from(number: f64) -> Value {
-        Value::Number(number)
+impl From<f64> for Fact {
+    fn from(number: f64) -> Fact {
+        Fact::Number(number)
     }
 }
 
 impl Metadata {
     /// Sets the value of `key`.
-    pub fn set(&mut self, key: &str, value: impl Into<Value>) {
+    pub fn set(&mut self, key: &str, value: impl Into<Fact>) {
         let value = value.into();
         match self.0.iter_mut().find(|(present, _)| present == key) {
             Some((_, held)) => *held = value,
@@ -106,14 +109,14 @@ impl Metadata {
     }
 
     /// Returns the value of `key`.
-    pub fn get(&self, key: &str) -> Option<&Value> {
+    pub fn get(&self, key: &str) -> Option<&Fact> {
         self.0.iter().find(|(present, _)| present == key).map(|(_, value)| value)
     }
 
     /// Returns the value of `key`, if it is text.
     pub fn text(&self, key: &str) -> Option<&str> {
         match self.get(key) {
-            Some(Value::Text(text)) => Some(text),
+            Some(Fact::Text(text)) => Some(text),
             _ => None,
         }
     }
@@ -121,13 +124,13 @@ impl Metadata {
     /// Returns the value of `key`, if it is a number.
     pub fn number(&self, key: &str) -> Option<f64> {
         match self.get(key) {
-            Some(Value::Number(number)) => Some(*number),
+            Some(Fact::Number(number)) => Some(*number),
             _ => None,
         }
     }
 
-    /// All facts in order.
-    pub fn iter(&self) -> impl Iterator<Item = (&str, &Value)> {
+    /// Returns all facts in order.
+    pub fn iter(&self) -> impl Iterator<Item = (&str, &Fact)> {
         self.0.iter().map(|(key, value)| (key.as_str(), value))
     }
 }

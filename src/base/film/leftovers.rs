@@ -1,28 +1,28 @@
-//! Temporary files that killed processes left beside the files which they were to become.
+//! Removal of temporary files that killed processes have left.
 //!
-//! A temporary file is locked as long as it is written: one that is not is nobody's. Where files cannot be locked, none
-//! is removed.
+//! A temporary file is locked while it is written, so an unlocked one has no writer. On file systems without locks, no
+//! file is removed.
 
 use rustix::fs::{FlockOperation, flock};
 use std::fs::{self, File};
 use std::path::Path;
 
-/// Ending of temporary files' names.
+/// Suffix of the names of temporary files.
 pub const SUFFIX: &str = ".tmp";
 
-/// Beginning of the names of a file's temporary files.
+/// Returns the prefix of the names of a file's temporary files.
 pub fn prefix(target: &Path) -> String {
-    // Names have at most 255 bytes, those of temporary files included.
+    // File names have at most 255 bytes.
     let name: String = target.file_name().unwrap_or_default().to_string_lossy().chars().take(40).collect();
     format!(".{name}.")
 }
 
-/// Locks a temporary file until it is closed; false if it is another's.
+/// Locks a temporary file until it is closed; returns false if another process has locked it.
 pub fn lock(file: &File) -> bool {
     flock(file, FlockOperation::NonBlockingLockExclusive).is_ok()
 }
 
-/// Removes the temporary files of `target`, in `folder`, that nobody writes. That they cannot be removed is no harm.
+/// Removes the temporary files of `target` in `folder` that nobody writes. Failures are ignored.
 pub fn remove(target: &Path, folder: &Path) {
     let prefix = prefix(target);
     for entry in fs::read_dir(folder).into_iter().flatten().flatten() {

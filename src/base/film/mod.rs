@@ -1,7 +1,7 @@
 //! The film: images in memory, EXR and PNG files, tone mapping and error metrics.
 //!
-//! [`Film`] holds the images and attributes of a frame's file; [`write_exr`] and [`write_png`] replace a file
-//! whole or not at all; [`metrics`] measures the difference of two pictures, and [`heatmap`] shows it.
+//! [`Film`] holds the images and attributes of a frame's file. [`write_exr`] and [`write_png`] replace a file
+//! completely or not at all. [`metrics`] measures the difference of two images, and [`heatmap`] shows it.
 
 pub mod atomic;
 mod error;
@@ -28,14 +28,14 @@ pub use exr_merge::Weight;
 pub use exr_read::{ExrFile, read_exr};
 pub use exr_write::write_exr;
 pub use layer::{Layer, Pixels, Preview, SAMPLES};
-pub use layers::{CameraMatrices, Film, Metadata, Value};
+pub use layers::{CameraMatrices, Fact, Film, Metadata};
 pub use png::{write_png, write_srgb8};
 pub use tone::{Exposure, display, srgb_slope};
 pub use window::Window;
 
 use crate::math::{Rgb, luminance};
 
-/// An image, of linear colours if nothing else is said; row-major, top row first.
+/// An image, by default of linear colours; row-major, top row first.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Image<T = Rgb> {
     /// Columns.
@@ -47,32 +47,32 @@ pub struct Image<T = Rgb> {
 }
 
 impl<T> Image<T> {
-    /// The same image with another value at each pixel.
+    /// Returns an image of other values.
     pub fn map<U>(&self, value: impl FnMut(&T) -> U) -> Image<U> {
         Image { width: self.width, height: self.height, pixels: self.pixels.iter().map(value).collect() }
     }
 
-    /// Width and height, and the number of values held.
+    /// Returns width and height, and the number of values.
     fn size(&self) -> ([u32; 2], usize) {
         ([self.width, self.height], self.pixels.len())
     }
 }
 
-/// Memory of a pixel while a picture is rendered and written, with its variance, in bytes, as measured.
+/// Bytes per pixel while an image is rendered with its variance and written.
 const PIXEL_BYTES: u64 = 72;
 
 impl Image {
-    /// Memory in bytes that it takes to render `window` and to write its files, about, whatever the method.
+    /// Returns the approximate memory in bytes for rendering `window` and writing its files, with any method.
     pub fn expected_bytes(window: &Window) -> u64 {
         window.pixel_count().saturating_mul(PIXEL_BYTES)
     }
 
-    /// A black image.
+    /// Creates a black image.
     pub fn new(width: u32, height: u32) -> Image {
         Image { width, height, pixels: vec![Rgb::ZERO; width as usize * height as usize] }
     }
 
-    /// Sum of the pixels' luminances.
+    /// Returns the sum of the pixels' luminances.
     pub fn luminance(&self) -> f64 {
         self.pixels.iter().map(|pixel| f64::from(luminance(*pixel))).sum()
     }
@@ -82,13 +82,13 @@ impl Image {
         self.pixels.iter().all(|pixel| *pixel == Rgb::ZERO)
     }
 
-    /// Replaces every channel that is not finite by 0 and returns their number.
+    /// Replaces every non-finite number by 0; returns their number.
     pub fn remove_nonfinite(&mut self) -> u64 {
         remove_nonfinite(self.pixels.iter_mut().flat_map(|pixel| pixel.as_mut()))
     }
 }
 
-/// Replaces every number that is not finite by 0 and returns their number.
+/// Replaces every non-finite number by 0; returns their number.
 fn remove_nonfinite<'a>(numbers: impl Iterator<Item = &'a mut f32>) -> u64 {
     let bad = numbers.filter(|number| !number.is_finite());
     bad.map(|number| *number = 0.0).count() as u64

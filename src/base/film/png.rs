@@ -6,12 +6,18 @@ use ::image::{ExtendedColorType, ImageEncoder, ImageError as EncodeError};
 use std::io;
 use std::path::Path;
 
-/// Writes `image`, times `factor`, clipped at 1 and sRGB-encoded, to `path`, whole or not at all.
+/// Writes `image` times `factor`, clipped at 1 and sRGB-encoded, to `path`, completely or not at all.
+///
+/// # Errors
+/// If writing fails.
 pub fn write_png(path: &Path, image: &Image, factor: f32) -> Result<(), ImageError> {
     write_srgb8(path, [image.width, image.height], &tone::to_srgb8(image, factor))
 }
 
-/// Writes display values, row-major, three bytes a pixel, to `path`, whole or not at all.
+/// Writes display values, row-major, three bytes per pixel, to `path`, completely or not at all.
+///
+/// # Errors
+/// If writing fails.
 pub fn write_srgb8(path: &Path, size: [u32; 2], bytes: &[u8]) -> Result<(), ImageError> {
     atomic::write_atomically(path, |file| {
         PngEncoder::new(file).write_image(bytes, size[0], size[1], ExtendedColorType::Rgb8).map_err(|error| {

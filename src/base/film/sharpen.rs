@@ -1,13 +1,13 @@
-//! Sharpening: the last part of pixel filters with negative lobes.
+//! Sharpening, the last step of pixel filters with negative lobes.
 //!
-//! See [`scene::PixelFilter`]. Along each axis a pixel is 1 + 2a of its own less a of each neighbour; pixels at
-//! the edge of the window have copies of themselves beyond it. Radiance may become negative beside bright lights.
+//! See `scene::PixelFilter`. Along each axis a sharpened pixel is (1 + 2a) times its value minus a times each
+//! neighbour. Beyond the edge of the window, edge pixels are repeated. Radiance may become negative near bright lights.
 
 use super::Image;
 use crate::math::Rgb;
 use rayon::prelude::*;
 
-/// Weights of the pixel before place `i` of `n`, of itself and of that after it.
+/// Returns the weights of the previous pixel, of pixel `i` of `n`, and of the next pixel.
 pub fn weights(a: f32, i: u32, n: u32) -> [f32; 3] {
     let before = if i == 0 { 0.0 } else { a };
     let after = if i + 1 == n { 0.0 } else { a };
@@ -15,17 +15,18 @@ pub fn weights(a: f32, i: u32, n: u32) -> [f32; 3] {
 }
 
 impl Image {
-    /// The sharpened picture.
+    /// Returns the sharpened image.
     pub fn sharpened(&self, a: f32) -> Image {
         self.combined(|i, n| weights(a, i, n))
     }
 
-    /// Variance of the sharpened picture's pixels, of that of independent ones.
+    /// Returns the variance of the sharpened image's pixels, from the variance of independent pixels.
     pub fn sharpened_variance(&self, a: f32) -> Image {
         self.combined(|i, n| weights(a, i, n).map(|weight| weight * weight))
     }
 
-    /// Sums over each pixel and those around it by products of `weights` along both axes, at place `i` of `n`.
+    /// Returns weighted sums over each pixel and its neighbours; `weights` gives the weights at place `i` of `n` along
+    /// an axis.
     fn combined(&self, weights: impl Fn(u32, u32) -> [f32; 3] + Sync) -> Image {
         let Image { width, height, ref pixels } = *self;
         let row = |y: u32| &pixels[y as usize * width as usize..][..width as usize];
@@ -76,7 +77,7 @@ mod tests {
         let even = Image::new(n, n).map(|_| Rgb::ONE);
         let variance = even.sharpened_variance(a);
         for (place, found) in variance.pixels.iter().enumerate() {
-            // The response to each single pixel is its weight.
+            // The response to a single pixel is its weight.
             let squares: f32 = (0..16)
                 .map(|single| {
                     let mut impulse = Image::new(n, n);

@@ -1,4 +1,4 @@
-//! From radiance to display values: exposure, clip at 1, sRGB.
+//! Tone mapping: exposure, clip at 1, sRGB.
 //!
 //! Units: display values are in [0, 1], encoded with the sRGB curve.
 
@@ -7,18 +7,18 @@ use crate::math::{Rgb, luminance};
 use std::fmt;
 use std::str::FromStr;
 
-/// Luminance percentile that automatic exposure maps to [`AUTO_TARGET`].
+/// Luminance quantile that automatic exposure maps to [`AUTO_TARGET`].
 pub const AUTO_PERCENTILE: f64 = 0.9;
-/// Linear display value of that percentile.
+/// Linear display value of that quantile.
 pub const AUTO_TARGET: f64 = 0.8;
 
 /// Scale of radiance before clipping.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Exposure {
-    /// The 90th percentile of luminance becomes 0.8.
+    /// Automatic: the 90th percentile of luminance becomes 0.8.
     #[default]
     Auto,
-    /// Radiance times 2^EV.
+    /// Exposure value: radiance times 2^EV.
     Ev(f32),
 }
 
@@ -55,8 +55,9 @@ impl fmt::Display for Exposure {
     }
 }
 
-/// Factor that brings the 90th percentile of luminance to 0.8; where that percentile is black, the brightest
-/// pixel is used instead; 1 for a black image.
+/// Returns the factor that maps the 90th percentile of luminance to 0.8.
+///
+/// If that percentile is black, the brightest pixel is used; for a black image the factor is 1.
 pub fn auto_factor(image: &Image) -> f32 {
     let mut luminances: Vec<f32> =
         image.pixels.iter().map(|&p| luminance(p)).filter(|l| l.is_finite()).collect();
@@ -68,14 +69,14 @@ pub fn auto_factor(image: &Image) -> f32 {
     if level > 0.0 && factor.is_finite() && factor > 0.0 { factor } else { 1.0 }
 }
 
-/// The `share` quantile, linear between the two nearest order statistics; 0 for no values. Reorders them.
+/// Returns the `share` quantile, linear between order statistics; 0 without values. Reorders the values.
 fn percentile(values: &mut [f32], share: f64) -> f64 {
     if values.is_empty() {
         return 0.0;
     }
     let position = share * (values.len() - 1) as f64;
     let (_, &mut low, above) = values.select_nth_unstable_by(position as usize, f32::total_cmp);
-    // The next order statistic is the minimum of those above; at the end there is none, and no fraction.
+    // The next order statistic is the minimum of the values above. At the end there is none, and the fraction is 0.
     let high = above.iter().copied().fold(f32::INFINITY, f32::min);
     let fraction = position.fract();
     if fraction == 0.0 || above.is_empty() {
@@ -100,7 +101,7 @@ pub fn srgb_encode(linear: f32) -> f32 {
     }
 }
 
-/// Derivative of the sRGB encoding at a linear value, on white as just below it.
+/// Returns the derivative of the sRGB encoding at a linear value; on white, the limit from below.
 #[inline]
 pub fn srgb_slope(linear: f32) -> f32 {
     let x = linear.clamp(0.0, 1.0);
@@ -114,7 +115,7 @@ pub fn display(radiance: Rgb, factor: f32) -> Rgb {
     Rgb::new(srgb_encode(exposed.x), srgb_encode(exposed.y), srgb_encode(exposed.z))
 }
 
-/// Converts the image to 8-bit sRGB, row-major, three bytes a pixel.
+/// Converts the image to 8-bit sRGB, row-major, three bytes per pixel.
 pub fn to_srgb8(image: &Image, factor: f32) -> Vec<u8> {
     let quantise = |value: f32| (value * 255.0 + 0.5) as u8;
     image.pixels.iter().flat_map(|&p| display(p, factor).to_array().map(quantise)).collect()
@@ -151,7 +152,7 @@ mod tests {
         assert_eq!(auto_factor(&grey(&[])), 1.0);
         assert_eq!(auto_factor(&grey(&[f32::NAN, f32::INFINITY])), 1.0);
         assert_eq!(auto_factor(&grey(&[-1.0; 3])), 1.0);
-        // Mostly black: the brightest pixel counts.
+        // The image is mostly black, so the brightest pixel counts.
         let mut values = [0.0; 100];
         values[3] = 4.0;
         assert!((auto_factor(&grey(&values)) - 0.2).abs() < 1e-7);

@@ -1,4 +1,4 @@
-//! The part of the film that is rendered.
+//! The rendered part of the film.
 
 use crate::sampling::owen_sobol_2d;
 
@@ -16,12 +16,12 @@ pub struct Window {
 }
 
 impl Window {
-    /// The whole film.
+    /// Returns the whole film.
     pub fn whole(film: [u32; 2]) -> Window {
         Window { film, offset: [0, 0], width: film[0], height: film[1] }
     }
 
-    /// `count` squares with edges of `length` pixels, shorter only on smaller films, spread evenly over a film.
+    /// Returns `count` squares of `length` pixels (less on smaller films), spread evenly over a film.
     pub fn spread(film: [u32; 2], length: u32, count: u32, seed: u32) -> impl Iterator<Item = Window> {
         let [width, height] = film.map(|pixels| pixels.min(length));
         (0..count).map(move |i| {
@@ -36,12 +36,12 @@ impl Window {
         })
     }
 
-    /// Number of pixels rendered.
+    /// Returns the number of rendered pixels.
     pub fn pixel_count(&self) -> u64 {
         self.width as u64 * self.height as u64
     }
 
-    /// Number of pixels of the whole film.
+    /// Returns the number of pixels of the whole film.
     pub fn film_pixel_count(&self) -> u64 {
         self.film.map(u64::from).iter().product()
     }
@@ -54,13 +54,12 @@ impl Window {
             && end(self.offset[1], self.height) <= self.film[1] as u64
     }
 
-    /// Number of square tiles of `size` pixels that cover the window.
+    /// Returns the number of square tiles of `size` pixels that cover the window.
     pub fn tile_count(&self, size: u32) -> usize {
         self.width.div_ceil(size) as usize * self.height.div_ceil(size) as usize
     }
 
-    /// Returns the pixels of tile `index` row by row, relative to the window; tiles are numbered row by row
-    /// too.
+    /// Returns the pixels of tile `index` row by row, relative to the window. Tiles are numbered row by row.
     pub fn tile(&self, index: usize, size: u32) -> impl Iterator<Item = [u32; 2]> + use<> {
         let across = self.width.div_ceil(size).max(1) as usize;
         let (left, top) = ((index % across) as u32 * size, (index / across) as u32 * size);
@@ -68,7 +67,7 @@ impl Window {
         (top..bottom).flat_map(move |y| (left..right).map(move |x| [x, y]))
     }
 
-    /// Corners, in rows, of the squares of `size` pixels that tile the film, as far as they have pixels in the window.
+    /// Returns the corners, by rows, of the squares of `size` pixels of the film that have pixels in the window.
     pub fn film_squares(&self, size: u32) -> impl Iterator<Item = [u32; 2]> + use<> {
         let corners = |offset: u32, length: u32| {
             (offset / size..(offset + length).div_ceil(size)).map(move |i| i * size)
@@ -82,14 +81,14 @@ impl Window {
         x < self.film[0] && y < self.film[1]
     }
 
-    /// Index of a film pixel in the rows of the window, if it is inside.
+    /// Returns the index of a film pixel in the rows of the window, if it is inside.
     #[inline]
     pub fn index(&self, [x, y]: [u32; 2]) -> Option<usize> {
         let (dx, dy) = (x.wrapping_sub(self.offset[0]), y.wrapping_sub(self.offset[1]));
         (dx < self.width && dy < self.height).then(|| dy as usize * self.width as usize + dx as usize)
     }
 
-    /// The window and so many pixels around it, as far as there are any on the film.
+    /// Returns the window with a margin of pixels, clipped to the film.
     pub fn grown(&self, by: u32) -> Window {
         let start = self.offset.map(|offset| offset.saturating_sub(by));
         let end = |i: usize, length: u32| (self.offset[i] + length).saturating_add(by).min(self.film[i]);
@@ -97,13 +96,13 @@ impl Window {
         Window { offset: start, width, height, ..*self }
     }
 
-    /// Pixels of the film that lie in the window, in rows.
+    /// Returns the film pixels of the window, by rows.
     pub fn film_pixels(&self) -> impl Iterator<Item = [u32; 2]> + use<> {
         let Window { offset: [left, top], width, height, .. } = *self;
         (top..top + height).flat_map(move |y| (left..left + width).map(move |x| [x, y]))
     }
 
-    /// Film coordinates of a pixel of the window.
+    /// Returns the film coordinates of a pixel of the window.
     #[inline]
     pub fn film_pixel(&self, [x, y]: [u32; 2]) -> [u32; 2] {
         [x + self.offset[0], y + self.offset[1]]

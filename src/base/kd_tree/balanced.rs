@@ -1,8 +1,10 @@
-//! A balanced kd-tree: splatting asks it for the points in a footprint, and sampling for cells that spread records
-//! evenly.
+//! A balanced kd-tree.
 //!
-//! Every node splits its points in halves along the longest side of their box, so that node `i` of level `l` is the
-//! range of points from `n·i / 2^l` to `n·(i + 1) / 2^l`: no pointers, and the order of the points is that in space.
+//! Splatting searches points in a footprint with it, and sampling uses its cells to spread records evenly.
+//!
+//! Every node splits its points in halves along the longest side of their box. Node `i` of level `l` is the range of
+//! points from `n·i / 2^l` to `n·(i + 1) / 2^l`. So the tree has no pointers, and points that are close in space are
+//! close in memory.
 
 use crate::progress::Control;
 use glam::Vec3;
@@ -11,10 +13,10 @@ use std::ops::Range;
 
 /// Maximum number of points in a leaf.
 const LEAF: usize = 32;
-/// Smaller ranges are sorted by one thread.
+/// Number of points up to which one thread sorts a range.
 const PARALLEL: usize = 8192;
 
-/// A box, empty until something is added.
+/// A bounding box; initially empty.
 #[derive(Clone, Copy, Debug)]
 pub struct Bounds {
     /// Minimum coordinates.
@@ -30,14 +32,14 @@ impl Bounds {
         Bounds { min: self.min.min(other.min), max: self.max.max(other.max) }
     }
 
-    /// Square of the distance from a point to the box.
+    /// Returns the squared distance from a point to the box.
     #[inline]
     pub fn distance_squared(&self, p: Vec3) -> f32 {
         (self.min - p).max(p - self.max).max(Vec3::ZERO).length_squared()
     }
 }
 
-/// The hierarchy; points must be stored in its order.
+/// The tree. Points must be stored in its order.
 pub struct KdTree {
     count: usize,
     depth: u32,
@@ -46,17 +48,18 @@ pub struct KdTree {
 }
 
 impl KdTree {
-    /// The hierarchy over no points.
+    /// Returns the tree over no points.
     pub fn empty() -> KdTree {
         KdTree::build([].into_iter()).0
     }
 
-    /// Builds the hierarchy over `positions`; returns it with the order in which to store the items.
+    /// Builds the tree over `positions`; returns it with the order in which to store the items.
     pub fn build(positions: impl ExactSizeIterator<Item = Vec3>) -> (KdTree, Vec<u32>) {
         KdTree::build_unless_cancelled(positions, &Control::new())
     }
 
-    /// The same, but the order may be any once `control` is cancelled: boxes are right, and large.
+    /// Builds the tree like [`KdTree::build`] unless `control` is cancelled. Boxes are then still correct, but the
+    /// order is arbitrary and boxes are large.
     pub fn build_unless_cancelled(
         positions: impl ExactSizeIterator<Item = Vec3>,
         control: &Control,
@@ -80,29 +83,29 @@ impl KdTree {
         (index, items.into_iter().map(|item| item.1).collect())
     }
 
-    /// Level of the leaves; the root is level 0.
+    /// Returns the level of the leaves; the root is level 0.
     pub fn depth(&self) -> u32 {
         self.depth
     }
 
-    /// Number of leaves.
+    /// Returns the number of leaves.
     pub fn leaves(&self) -> usize {
         1 << self.depth
     }
 
-    /// Points of node `i` of a level. Levels below the leaves divide leaves in the same way, in storage order.
+    /// Returns the points of node `i` of a level. Levels below the leaves divide leaves in storage order.
     #[inline]
     pub fn range(&self, level: u32, i: usize) -> Range<usize> {
         range(self.count, level, i)
     }
 
-    /// Points of a leaf.
+    /// Returns the points of a leaf.
     #[inline]
     pub fn leaf(&self, leaf: usize) -> Range<usize> {
         self.range(self.depth, leaf)
     }
 
-    /// Calls `visit` with every leaf whose box comes within `radius` of `p`.
+    /// Calls `visit` for every leaf whose box is within `radius` of `p`.
     pub fn leaves_near(&self, p: Vec3, radius: f32, mut visit: impl FnMut(usize)) {
         let radius_sq = radius * radius;
         let mut stack = [0usize; 64];
@@ -132,7 +135,7 @@ fn range(count: usize, level: u32, i: usize) -> Range<usize> {
     at(i)..at(i + 1)
 }
 
-/// Sorts the items of node `i` of a level, whose range they are.
+/// Sorts the items of node `i` of a level; `items` is the range of the node.
 fn sort(items: &mut [(Vec3, u32)], count: usize, level: u32, i: usize, depth: u32, control: &Control) {
     if level == depth || control.is_cancelled() {
         return;
@@ -149,7 +152,7 @@ fn sort(items: &mut [(Vec3, u32)], count: usize, level: u32, i: usize, depth: u3
         2
     };
     let middle = range(count, level + 1, 2 * i + 1).start - range(count, level, i).start;
-    // By number where positions are equal, so that the order is one and the same on every run.
+    // Equal coordinates are ordered by index, so the order is the same on every run.
     items.select_nth_unstable_by(middle, |a, b| a.0[axis].total_cmp(&b.0[axis]).then(a.1.cmp(&b.1)));
     let (left, right) = items.split_at_mut(middle);
     let mut halves = [(left, 2 * i), (right, 2 * i + 1)];

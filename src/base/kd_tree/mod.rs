@@ -1,7 +1,7 @@
-//! Hierarchies over points on surfaces, in an order in which neighbours in space are neighbours in memory.
+//! Hierarchies over points on surfaces. Neighbours in space are neighbours in memory.
 //!
-//! - [`balanced`]: a kd-tree without pointers, which gives the order;
-//! - [`wide`]: the same with sixteen children a node, for many small queries.
+//! - [`balanced`]: a kd-tree without pointers, which determines the order;
+//! - [`wide`]: the same tree with sixteen children per node, for small queries.
 
 mod balanced;
 mod wide;

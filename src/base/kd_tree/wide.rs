@@ -1,20 +1,21 @@
-//! The nearest of many points, by a hierarchy of boxes of which sixteen are tested at once.
+//! Nearest-neighbour search with nodes of sixteen boxes, tested at once.
 //!
-//! Paper: Wald, Benthin and Boulos, *Getting Rid of Packets*, 2008 (sixteen children a node, for rays). Every
-//! fourth level of an [`KdTree`], from its leaves up: a query is bound by the latency of one node after the
-//! other, and there are three or four instead of twelve to sixteen.
+//! Paper: Wald, Benthin and Boulos, *Getting Rid of Packets*, 2008 (sixteen children per node, for rays).
+//!
+//! The nodes are every fourth level of a [`KdTree`], from the leaves up. The latency of consecutive nodes bounds a
+//! query, and three or four nodes replace twelve to sixteen.
 
 use super::KdTree;
 use crate::math::{F32x16, LANES, U32x16, lanes_in, mask_of};
 use glam::Vec3;
 
-/// Levels of the index that one node spans: sixteen children.
+/// Levels of the binary tree per node.
 const BITS: u32 = LANES.trailing_zeros();
 
-/// Size of the stack of nodes still to visit: fifteen a level, of which there are eight for 2³² leaves.
+/// Size of the stack of nodes to visit: fifteen per level, and eight levels for 2³² leaves.
 const STACK: usize = 15 * 8;
 
-/// Boxes of sixteen children; missing ones are at infinite distance.
+/// Boxes of sixteen children. Missing ones are at infinite distance.
 #[derive(Clone, Debug)]
 #[repr(align(64))]
 struct WideNode {
@@ -26,7 +27,7 @@ impl WideNode {
     const EMPTY: WideNode =
         WideNode { min: [[f32::INFINITY; LANES]; 3], max: [[f32::NEG_INFINITY; LANES]; 3] };
 
-    /// Squares of the distances from a point to the boxes.
+    /// Returns the squared distances from a point to the boxes.
     #[inline(always)]
     fn distances_sq(&self, p: [f32; 3]) -> F32x16 {
         let mut sum = [0.0; LANES];
@@ -43,16 +44,16 @@ impl WideNode {
     }
 }
 
-/// The hierarchy.
+/// The tree.
 pub struct WideKdTree {
-    /// Level after level from the root, which has 2^first children.
+    /// Nodes by level from the root, which has 2^first children.
     nodes: Vec<WideNode>,
-    /// Index in `nodes` at which each level begins.
+    /// Index in `nodes` of the first node of each level.
     levels: Vec<usize>,
 }
 
 impl WideKdTree {
-    /// Builds the hierarchy over the leaves of an index, whose points are at `positions`.
+    /// Builds the tree over the leaves of a binary tree, whose points are at `positions`.
     pub fn new(index: &KdTree, positions: &[Vec3]) -> WideKdTree {
         let first = match index.depth() % BITS {
             0 if index.depth() > 0 => BITS,
@@ -76,8 +77,9 @@ impl WideKdTree {
         WideKdTree { nodes, levels }
     }
 
-    /// Calls `visit` with the leaves whose boxes come within a radius of `p`, the nearest first and then near
-    /// ones as a rule. `visit` takes the leaf and the radius squared, and returns the reduced radius squared.
+    /// Calls `visit` for leaves whose boxes are within a radius of `p`: the nearest first, then roughly by distance.
+    ///
+    /// `visit` takes the leaf and the squared radius, and returns the reduced squared radius.
     #[inline]
     pub fn leaves(&self, p: Vec3, mut radius_sq: f32, mut visit: impl FnMut(usize, f32) -> f32) {
         let p = p.to_array();

@@ -29,8 +29,9 @@ impl Frame {
         }
     }
 
-    /// Builds a frame whose z axis is the unit vector `normal`, and whose x axis is along `tangent`, as far as that
-    /// lies across; any if it does not.
+    /// Builds a frame whose z axis is the unit vector `normal`.
+    ///
+    /// The x axis is the component of `tangent` across the normal, or any vector across if that component is zero.
     #[inline]
     pub fn from_normal_and_tangent(normal: Vec3, tangent: Vec3) -> Frame {
         let across = tangent.normalize_or_zero();

@@ -1,22 +1,21 @@
 //! Sixteen values at a time, as structures of arrays.
 //!
-//! A loop over all lanes whose body neither calls nor branches compiles to vector instructions, whatever
-//! scalar functions it was written with: so stages read their lanes with `get`, compute on [`Vec3`]s as
-//! usual, and write with `set`. Work that does not vectorise (look-ups, rare cases) goes lane by lane in a
-//! loop of its own.
+//! A loop over all lanes compiles to vector instructions if its body neither calls nor branches. So stages read lanes
+//! with `get`, compute on [`Vec3`]s, and write with `set`. Work that does not vectorise (look-ups, rare cases) is done
+//! lane by lane in another loop.
 
 use glam::{Vec2, Vec3};
 
-/// Number of lanes of a packet, the width of Embree's largest.
+/// Number of lanes of a packet, as in the widest packets of Embree.
 pub const LANES: usize = 16;
 
-/// A number in each lane.
+/// One number per lane.
 pub type F32x16 = [f32; LANES];
 
-/// An unsigned number in each lane.
+/// One unsigned number per lane.
 pub type U32x16 = [u32; LANES];
 
-/// A point of the plane in each lane.
+/// One point of the plane per lane.
 #[derive(Clone, Copy, Debug, Default)]
 #[repr(C, align(64))]
 pub struct Vec2x16 {
@@ -26,7 +25,7 @@ pub struct Vec2x16 {
     pub y: F32x16,
 }
 
-/// A vector or a colour in each lane.
+/// One vector or colour per lane.
 #[derive(Clone, Copy, Debug, Default)]
 #[repr(C, align(64))]
 pub struct Vec3x16 {
@@ -39,7 +38,7 @@ pub struct Vec3x16 {
 }
 
 impl Vec2x16 {
-    /// The point in a lane.
+    /// Returns the point in a lane.
     #[inline(always)]
     pub fn get(&self, lane: usize) -> Vec2 {
         Vec2::new(self.x[lane], self.y[lane])
@@ -57,13 +56,13 @@ impl Vec3x16 {
     /// The zero vector in all lanes.
     pub const ZERO: Vec3x16 = Vec3x16 { x: [0.0; LANES], y: [0.0; LANES], z: [0.0; LANES] };
 
-    /// The same vector in all lanes.
+    /// Returns a packet with one vector in all lanes.
     #[inline(always)]
     pub const fn splat(v: Vec3) -> Vec3x16 {
         Vec3x16 { x: [v.x; LANES], y: [v.y; LANES], z: [v.z; LANES] }
     }
 
-    /// Coordinates by row: all first ones, all second ones, all third ones.
+    /// Returns the coordinates by row: all first, all second and all third ones.
     #[inline(always)]
     pub fn rows(&self) -> [&F32x16; 3] {
         [&self.x, &self.y, &self.z]
@@ -89,7 +88,7 @@ impl Vec3x16 {
         }
     }
 
-    /// The vector in a lane.
+    /// Returns the vector in a lane.
     #[inline(always)]
     pub fn get(&self, lane: usize) -> Vec3 {
         Vec3::new(self.x[lane], self.y[lane], self.z[lane])
@@ -104,13 +103,13 @@ impl Vec3x16 {
     }
 }
 
-/// Mask of the first `count` lanes, at most all.
+/// Returns the mask of the first `count` lanes, at most all.
 #[inline]
 pub fn first_lanes(count: usize) -> u16 {
     ((1u32 << count.min(LANES)) - 1) as u16
 }
 
-/// Mask of the lanes where `flags` are not zero.
+/// Returns the mask of the lanes with non-zero `flags`.
 #[inline]
 pub fn mask_of(flags: &U32x16) -> u16 {
     let mut mask = 0;
@@ -120,7 +119,7 @@ pub fn mask_of(flags: &U32x16) -> u16 {
     mask as u16
 }
 
-/// The lanes of a mask, in order.
+/// Returns the lanes of a mask in ascending order.
 #[inline]
 pub fn lanes_in(mask: u16) -> impl Iterator<Item = usize> {
     let mut left = mask;

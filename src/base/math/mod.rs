@@ -15,13 +15,13 @@ pub use quadrature::gauss_legendre;
 pub use real::{F32x8, Real, WIDTH};
 pub use unit::{right_of, unit};
 
-/// Linear colour with sRGB (Rec. 709) primaries: radiance, irradiance, flux or reflectance as the name says.
+/// Linear colour with Rec. 709 primaries: radiance, irradiance, flux or reflectance, as the variable's name says.
 pub type Rgb = glam::Vec3;
 
-/// Rec. 709 luminance weights, `dot` them with an [`Rgb`].
+/// Luminance weights of Rec. 709.
 pub const LUMINANCE: Rgb = Rgb::new(0.2126, 0.7152, 0.0722);
 
-/// Luminance of a linear colour, in the colour's own unit.
+/// Returns the luminance of a linear colour, in the colour's unit.
 #[inline]
 pub fn luminance(c: Rgb) -> f32 {
     c.dot(LUMINANCE)

@@ -1,8 +1,8 @@
-//! Gauss-Legendre quadrature on [0, 1], for tables computed once a scene.
+//! Gauss-Legendre quadrature on [0, 1], for tables that are computed once per scene.
 
 use std::f64::consts::PI;
 
-/// Nodes in (0, 1) and their weights, which sum to 1.
+/// Returns nodes in (0, 1) and their weights, which sum to 1.
 pub fn gauss_legendre(n: usize) -> Vec<(f64, f64)> {
     (0..n)
         .map(|i| {
@@ -24,7 +24,7 @@ pub fn gauss_legendre(n: usize) -> Vec<(f64, f64)> {
         .collect()
 }
 
-/// P_n(x) and its derivative.
+/// Returns P_n(x) and its derivative.
 fn legendre(n: usize, x: f64) -> (f64, f64) {
     let (mut previous, mut current) = (1.0, x);
     for k in 2..=n {

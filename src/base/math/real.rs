@@ -1,5 +1,5 @@
-//! Arithmetic for formulas that are written once and run in single precision, in double precision, or in
-//! single precision for eight arguments side by side.
+//! Arithmetic for formulas that run in single precision, in double precision, and in single precision for eight
+//! arguments at once.
 
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub};
 
@@ -16,10 +16,10 @@ pub trait Real:
     /// Returns a constant, rounded.
     fn of(value: f64) -> Self;
 
-    /// Square root.
+    /// Returns the square root.
     fn sqrt(self) -> Self;
 
-    /// Returns the larger, and `other` where this is NaN.
+    /// Returns the larger number; `other` if `self` is NaN.
     fn max(self, other: Self) -> Self;
 }
 
@@ -57,7 +57,7 @@ impl F32x8 {
     /// Zero in all lanes.
     pub const ZERO: F32x8 = F32x8([0.0; WIDTH]);
 
-    /// The sum of all eight, always added in the same order.
+    /// Returns the sum of all eight, always added in the same order.
     #[inline]
     pub fn sum(self) -> f32 {
         let [a, b, c, d, e, f, g, h] = self.0;
@@ -72,8 +72,7 @@ macro_rules! lanewise {
 
             #[inline(always)]
             fn $function(mut self, other: F32x8) -> F32x8 {
-                // A plain loop: iterators and `from_fn` are not always inlined, and then the code does not
-                // vectorise.
+                // Iterators and `from_fn` are not always inlined, and then the code does not vectorise.
                 for i in 0..WIDTH {
                     self.0[i] $symbol other.0[i];
                 }

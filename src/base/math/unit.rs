@@ -1,21 +1,21 @@
-//! Directions at unit length, whatever length they were given with.
+//! Unit directions of vectors of any length.
 
 use glam::DVec3;
 
-/// Range of squared lengths by which a vector can be divided without loss.
-const ORDINARY: std::ops::Range<f64> = 1e-200..1e200;
+/// Range of squared lengths for which division by the length loses no precision.
+const SAFE_SQUARED_LENGTHS: std::ops::Range<f64> = 1e-200..1e200;
 
-/// Minimum sine of the angle between a direction and another that is not to be along it.
+/// Minimum sine of the angle between two directions that must not be parallel.
 const MIN_SINE: f64 = 1e-12;
 
-/// Returns the direction of `v`; none where that is zero, or not finite.
+/// Returns the unit direction of `v`; `None` if `v` is zero or not finite.
 ///
-/// The squares of its components may underflow or overflow.
+/// Squares of components may underflow or overflow.
 pub fn unit(v: DVec3) -> Option<DVec3> {
-    if ORDINARY.contains(&v.length_squared()) {
+    if SAFE_SQUARED_LENGTHS.contains(&v.length_squared()) {
         return Some(v.normalize());
     }
-    // A power of two, in two steps, for that of the least numbers has no reciprocal.
+    // The scale is a power of two, applied in two steps: that of the smallest numbers has no reciprocal.
     let exponent = v.abs().max_element().log2().floor();
     if !(exponent.is_finite() && v.is_finite()) {
         return None;
@@ -24,14 +24,15 @@ pub fn unit(v: DVec3) -> Option<DVec3> {
     Some((v * half.exp2() * (-exponent - half).exp2()).normalize())
 }
 
-/// Returns the direction that lies across the unit vector `forward` and across `up`, to the right of who looks forward;
-/// none where `up` has no direction or lies along `forward`.
+/// Returns the unit vector across `forward` and `up`, to the right as seen along the unit vector `forward`.
+///
+/// Returns `None` if `up` has no direction or is parallel to `forward`.
 pub fn right_of(forward: DVec3, up: DVec3) -> Option<DVec3> {
     let across = forward.cross(unit(up)?);
     if !(across.length() > MIN_SINE) {
         return None;
     }
-    // What rounding leaves of `forward` in a short product would grow with it.
+    // Normalising a short product would magnify its rounding error along `forward`.
     unit(unit(across)?.reject_from_normalized(forward))
 }
 

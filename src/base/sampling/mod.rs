@@ -8,7 +8,7 @@ pub use packet::Samplers16;
 pub use sobol::{Sampler, hash, owen_sobol_2d, unit};
 pub use warp::{cosine_hemisphere, uniform_disk, uniform_sphere, uniform_triangle};
 
-/// Weight of a sample of density `a` against another technique of density `b` (Veach, β = 2).
+/// Returns the MIS weight of a sample of density `a` against another technique of density `b` (Veach, β = 2).
 #[inline(always)]
 pub fn power_heuristic(a: f32, b: f32) -> f32 {
     let ratio = b / a;

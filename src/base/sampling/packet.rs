@@ -1,9 +1,9 @@
-//! The random numbers of sixteen samplers at once.
+//! Random numbers of sixteen samplers at once.
 
 use super::sobol::{DIMENSION_STEP, mix, owen_sobol_2d, owen_van_der_corput};
 use crate::math::{F32x16, LANES, U32x16, Vec2x16};
 
-/// Sixteen sequences; lane by lane their points are those of [`super::Sampler`].
+/// Sixteen sequences. Each lane has the points of a [`super::Sampler`].
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Samplers16 {
     /// Seeds of the sequences.
@@ -13,7 +13,7 @@ pub struct Samplers16 {
 }
 
 impl Samplers16 {
-    /// Points in pair `pair` of dimensions, counted from 1: those that each sampler's `pair`-th call returns.
+    /// Returns the points of pair `pair` of dimensions, counted from 1: those of each sampler's `pair`-th call.
     #[inline]
     pub fn point(&self, pair: u32) -> Vec2x16 {
         let dimension = pair.wrapping_mul(DIMENSION_STEP);
@@ -24,7 +24,7 @@ impl Samplers16 {
         points
     }
 
-    /// The first coordinates of [`Samplers16::point`] alone.
+    /// Returns the first coordinates of [`Samplers16::point`].
     #[inline]
     pub fn number(&self, pair: u32) -> F32x16 {
         let dimension = pair.wrapping_mul(DIMENSION_STEP);

@@ -1,21 +1,24 @@
 //! Sobol points in pairs of dimensions, Owen-scrambled and decorrelated by hashing.
 //!
-//! Paper: Burley, *Practical Hash-based Owen Scrambling*, JCGT 2020: each pair of dimensions is the first
-//! two of Sobol's, scrambled by its own seed and visited in an order shuffled by its own seed ("padding").
-//! The second dimension's generator matrix is Pascal's triangle modulo 2, a Kronecker power, and so is
-//! applied by five shifted XORs instead of a loop over bits.
+//! Paper: Burley, *Practical Hash-based Owen Scrambling*, JCGT 2020. Each pair of dimensions is the first two of
+//! Sobol's. A seed of its own scrambles it, and another shuffles its order ("padding").
+//!
+//! The second dimension's generator matrix is Pascal's triangle modulo 2, a Kronecker power. Five shifted XORs apply it
+//! without a loop over bits.
 //!
 //! Deviations: the nested uniform scramble uses the constants of Vegdahl's *Building a Better LK Hash* (2021).
 //! All 32 bits of the index are used, so a pass of 2^32 samples has no duplicate.
 
 use glam::Vec2;
 
-/// Seeds that tell the dimensions of a pair, and pairs, apart: the digits of π, e and the golden ratio.
+/// Seed of the first dimension of a pair: digits of π.
 const X_SEED: u32 = 0x6487_ed51;
+/// Seed of the second dimension of a pair: digits of e.
 const Y_SEED: u32 = 0xb7e1_5162;
+/// Difference of the seeds of consecutive pairs: digits of the golden ratio.
 pub(super) const DIMENSION_STEP: u32 = 0x9e37_79b9;
 
-/// A well-mixed 32-bit hash of two words.
+/// Returns a well-mixed 32-bit hash of two words.
 #[inline]
 pub fn hash(a: u32, b: u32) -> u32 {
     // The finaliser of MurmurHash3 over a 64-bit product mix.
@@ -27,7 +30,7 @@ pub fn hash(a: u32, b: u32) -> u32 {
     x as u32
 }
 
-/// A cheaper hash of one word (Wellons' *lowbias32*), for seeds that the scramble will mix further.
+/// Returns a cheaper hash of one word (Wellons' *lowbias32*), for seeds that the scramble mixes further.
 #[inline(always)]
 pub(super) fn mix(mut x: u32) -> u32 {
     x ^= x >> 16;
@@ -37,7 +40,7 @@ pub(super) fn mix(mut x: u32) -> u32 {
     x ^ (x >> 16)
 }
 
-/// Owen scrambling of a bit-reversed number: every bit is flipped by a hash of the bits below it.
+/// Applies Owen scrambling to a bit-reversed number: a hash of the lower bits flips every bit.
 #[inline(always)]
 fn scramble_reversed(mut x: u32, seed: u32) -> u32 {
     x ^= x.wrapping_mul(0x3d20_adea);
@@ -47,7 +50,7 @@ fn scramble_reversed(mut x: u32, seed: u32) -> u32 {
     x ^ x.wrapping_mul(0x53a2_2864)
 }
 
-/// Second Sobol dimension of `index`, bit-reversed.
+/// Returns the second Sobol dimension of `index`, bit-reversed.
 #[inline(always)]
 fn sobol_second_reversed(mut x: u32) -> u32 {
     x ^= (x >> 16) & 0x0000_ffff;
@@ -63,14 +66,15 @@ pub fn unit(bits: u32) -> f32 {
     (bits >> 8) as f32 * (1.0 / 16_777_216.0)
 }
 
-/// Position of point `index` in the order of `seed`: a nested shuffle, so that every power-of-two run stays
-/// stratified.
+/// Returns the position of point `index` in the order of `seed`.
+///
+/// The shuffle is nested, so every run of a power of two stays stratified.
 #[inline(always)]
 fn shuffled(index: u32, seed: u32) -> u32 {
     scramble_reversed(index.reverse_bits(), seed).reverse_bits()
 }
 
-/// Point `index` of the two-dimensional Owen-scrambled Sobol sequence of seed `seed`, in [0, 1)².
+/// Returns point `index` of the two-dimensional Owen-scrambled Sobol sequence of seed `seed`, in [0, 1)².
 #[inline]
 pub fn owen_sobol_2d(index: u32, seed: u32) -> Vec2 {
     let i = shuffled(index, seed);
@@ -80,14 +84,13 @@ pub fn owen_sobol_2d(index: u32, seed: u32) -> Vec2 {
     Vec2::new(unit(x), unit(y))
 }
 
-/// Point `index` of the one-dimensional Owen-scrambled van der Corput sequence of seed `seed`, in [0, 1).
+/// Returns point `index` of the one-dimensional Owen-scrambled van der Corput sequence of seed `seed`, in [0, 1).
 #[inline]
 pub fn owen_van_der_corput(index: u32, seed: u32) -> f32 {
     unit(scramble_reversed(shuffled(index, seed), mix(seed ^ X_SEED)).reverse_bits())
 }
 
-/// The random numbers of one sample, in any number of dimensions, each stratified over the samples that share
-/// a seed.
+/// Random numbers of one sample, in any number of dimensions. Each is stratified over the samples of a seed.
 #[derive(Clone, Copy, Debug)]
 pub struct Sampler {
     seed: u32,
@@ -96,8 +99,7 @@ pub struct Sampler {
 }
 
 impl Sampler {
-    /// Creates the sampler of sample `index` of the sequence of seed `seed` (one seed a pixel, one index a
-    /// sample).
+    /// Creates the sampler of sample `index` of the sequence of seed `seed`: one seed per pixel, one index per sample.
     #[inline]
     pub fn new(seed: u32, index: u32) -> Sampler {
         Sampler { seed, index, dimension: 0 }

@@ -1,9 +1,9 @@
-//! Maps from the unit square to other domains, all area-preserving up to the stated density.
+//! Maps from the unit square to other domains, each with the density that its comment states.
 
 use glam::{Vec2, Vec3};
 use std::f32::consts::{FRAC_PI_4, TAU};
 
-/// Uniform points of the unit disk, by concentric squares (Shirley & Chiu 1997), which keeps strata compact.
+/// Returns a uniform point of the unit disk, by the concentric map (Shirley & Chiu 1997), which keeps strata compact.
 #[inline]
 pub fn uniform_disk(u: Vec2) -> Vec2 {
     let p = 2.0 * u - Vec2::ONE;
@@ -13,8 +13,9 @@ pub fn uniform_disk(u: Vec2) -> Vec2 {
     if steep { Vec2::new(r * sin, r * cos) } else { Vec2::new(r * cos, r * sin) }
 }
 
-/// Sine and cosine of an angle within ±π/4, by their Taylor polynomials: 1e-7 relative, and much faster than
-/// the library's functions, which would otherwise dominate the time of this map.
+/// Returns sine and cosine of an angle within ±π/4, by Taylor polynomials to a relative error of 1e-7.
+///
+/// The library's functions would dominate the time of this map.
 #[inline]
 fn sin_cos_octant(x: f32) -> (f32, f32) {
     let x2 = x * x;
@@ -24,7 +25,7 @@ fn sin_cos_octant(x: f32) -> (f32, f32) {
     (sin, cos)
 }
 
-/// Unit vectors about +z with density cosθ/π.
+/// Returns a unit vector around +z with density cosθ/π.
 #[inline]
 pub fn cosine_hemisphere(u: Vec2) -> Vec3 {
     let d = uniform_disk(u);
@@ -32,7 +33,7 @@ pub fn cosine_hemisphere(u: Vec2) -> Vec3 {
     d.extend((1.0 - d.length_squared()).max(1e-12).sqrt())
 }
 
-/// Unit vectors with density 1/4π.
+/// Returns a unit vector with density 1/4π.
 #[inline]
 pub fn uniform_sphere(u: Vec2) -> Vec3 {
     let z = 1.0 - 2.0 * u.x;
@@ -41,7 +42,7 @@ pub fn uniform_sphere(u: Vec2) -> Vec3 {
     Vec3::new(r * cos, r * sin, z)
 }
 
-/// Barycentric weights of corners 1 and 2, uniform over a triangle (Heitz 2019, a low-distortion map).
+/// Returns barycentric weights of corners 1 and 2, uniform over a triangle (Heitz 2019, low-distortion map).
 #[inline]
 pub fn uniform_triangle(u: Vec2) -> Vec2 {
     if u.y > u.x {

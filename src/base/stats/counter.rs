@@ -7,13 +7,12 @@ pub enum Counter {
     Count(u64),
     /// A real sum.
     Sum(f64),
-    /// Integer observations, summarised.
-    Distribution(Distribution),
+    /// Summary of integer observations.
+    Distribution(Observations),
 }
 
 impl Counter {
-    /// Adds `other`. A name stands for one kind of counter; if a caller mixes kinds, the first one stays
-    /// and the mistake shows in a debug build.
+    /// Adds `other`. If the two are of different kinds, the first one stays; a debug build panics.
     pub(super) fn combine(&mut self, other: Counter) {
         match (self, other) {
             (Counter::Count(a), Counter::Count(b)) => *a = a.saturating_add(b),
@@ -24,12 +23,13 @@ impl Counter {
     }
 }
 
-/// Number, sum and range of integer observations: exact, so the same for any order of merging.
+/// Number, sum and range of integer observations. The integers are exact, so any order of merging gives the same
+/// result.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Distribution {
+pub struct Observations {
     /// Number of observations.
     pub count: u64,
-    /// Their sum.
+    /// Sum of the observations.
     pub sum: u64,
     /// Minimum; `u64::MAX` if there is none.
     pub min: u64,
@@ -37,34 +37,34 @@ pub struct Distribution {
     pub max: u64,
 }
 
-impl Default for Distribution {
-    fn default() -> Distribution {
-        Distribution { count: 0, sum: 0, min: u64::MAX, max: 0 }
+impl Default for Observations {
+    fn default() -> Observations {
+        Observations { count: 0, sum: 0, min: u64::MAX, max: 0 }
     }
 }
 
-impl Distribution {
-    /// Creates a distribution of one observation.
-    pub fn of(value: u64) -> Distribution {
-        Distribution { count: 1, sum: value, min: value, max: value }
+impl Observations {
+    /// Creates the summary of one observation.
+    pub fn of(value: u64) -> Observations {
+        Observations { count: 1, sum: value, min: value, max: value }
     }
 
     /// Adds one observation.
     #[inline]
     pub fn observe(&mut self, value: u64) {
-        self.merge(&Distribution::of(value));
+        self.merge(&Observations::of(value));
     }
 
     /// Adds all observations of `other`.
     #[inline]
-    pub fn merge(&mut self, other: &Distribution) {
+    pub fn merge(&mut self, other: &Observations) {
         self.count += other.count;
         self.sum = self.sum.saturating_add(other.sum);
         self.min = self.min.min(other.min);
         self.max = self.max.max(other.max);
     }
 
-    /// The mean, 0 if there is no observation.
+    /// Returns the mean; 0 without observations.
     pub fn mean(&self) -> f64 {
         if self.count == 0 { 0.0 } else { self.sum as f64 / self.count as f64 }
     }
@@ -76,10 +76,10 @@ mod tests {
 
     #[test]
     fn an_empty_distribution_is_neutral() {
-        let mut d = Distribution::default();
+        let mut d = Observations::default();
         assert_eq!(d.mean(), 0.0);
-        d.merge(&Distribution::of(7));
-        d.merge(&Distribution::default());
-        assert_eq!(d, Distribution::of(7));
+        d.merge(&Observations::of(7));
+        d.merge(&Observations::default());
+        assert_eq!(d, Observations::of(7));
     }
 }

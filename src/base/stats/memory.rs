@@ -1,19 +1,21 @@
-//! Memory used by the process, and memory left to it.
+//! Memory that the process uses, and memory available to it.
 
 use std::path::Path;
 
-/// Gives back to the system what the threads of the current pool have freed, and keep for what they allocate next.
+/// Returns memory to the system that threads of the current pool have freed but keep for later.
 pub fn give_back() {
     rayon::broadcast(|_| allocator::give_back());
 }
 
-/// Peak resident set size of this process, in bytes; `None` where the system does not report it.
+/// Returns the peak resident set size of this process in bytes; `None` if the system does not report it.
 pub fn peak_resident_bytes() -> Option<u64> {
     field(&std::fs::read_to_string("/proc/self/status").ok()?, "VmHWM:")
 }
 
-/// Memory available to this process without swapping, in bytes: that of the machine, or less by the limits of its
-/// control groups (as of containers) and of its address space. `None` where the system reports none of them.
+/// Returns the memory available to this process without swapping, in bytes.
+///
+/// This is the machine's available memory, limited by control groups (as of containers) and by the address space.
+/// `None` if the system reports none of these.
 pub fn available_bytes() -> Option<u64> {
     let read = |path: &str| std::fs::read_to_string(path).ok();
     let machine = read("/proc/meminfo").and_then(|text| field(&text, "MemAvailable:"));
@@ -25,14 +27,16 @@ pub fn available_bytes() -> Option<u64> {
     [machine, groups, space].into_iter().flatten().min()
 }
 
-/// The soft limit of the address space in `/proc/self/limits`; `None` if it is unlimited.
+/// Returns the soft limit of the address space in `/proc/self/limits`; `None` if unlimited.
 fn address_space(limits: &str) -> Option<u64> {
     let line = limits.lines().find_map(|line| line.strip_prefix("Max address space"))?;
     line.split_whitespace().next()?.parse().ok()
 }
 
-/// The least that is left to the memory groups of `/proc/self/cgroup`, of version 1 or 2, and all above them, under
-/// `mount`; `None` if none has a limit. A container may see its own group at the mount alone.
+/// Returns the minimum of the memory left to the groups of `/proc/self/cgroup` (version 1 or 2) and their parents under
+/// `mount`.
+///
+/// Returns `None` without limits. A container may see its own group at the mount only.
 fn left_to_groups(groups: &str, mount: &Path) -> Option<u64> {
     let mut left = None;
     for line in groups.lines() {
@@ -52,12 +56,12 @@ fn left_to_groups(groups: &str, mount: &Path) -> Option<u64> {
     left
 }
 
-/// Limit of a group less what it uses; files that are cached give way.
+/// Returns the limit of a group minus its use. Inactive file caches do not count as use.
 fn left_to_group(folder: &Path, [limit, used]: [&str; 2]) -> Option<u64> {
     let read = |name: &str| std::fs::read_to_string(folder.join(name)).ok();
     let number = |name: &str| read(name)?.trim().parse::<u64>().ok();
     let cached = read("memory.stat").and_then(|text| {
-        // Version 1 tells that of groups below apart.
+        // Version 1 reports the caches of child groups separately.
         let line = |name| text.lines().find_map(|line| line.strip_prefix(name));
         line("total_inactive_file ").or_else(|| line("inactive_file "))?.trim().parse::<u64>().ok()
     });

@@ -1,9 +1,9 @@
 //! Counters and stage times of a run.
 //!
-//! Counters are named `Group/name` (`Rays/shadow`) and declared where they are counted; the report groups
-//! itself. Each worker fills a [`Stats`] of its own and the owner merges them in a fixed order, so that the
-//! figures are the same for any number of threads: integer counters and distributions are exact in any
-//! order, real sums only in a fixed one.
+//! Counters are named `Group/name` (`Rays/shadow`) and declared where they are counted. The report groups them by name.
+//!
+//! Each worker fills its own [`Stats`], and the owner merges them in a fixed order. So the figures are the same for any
+//! number of threads: integers are exact in any order, real sums only in a fixed one.
 //!
 //! Units: stage times are wall-clock and CPU seconds, the latter over all threads of the process.
 
@@ -17,7 +17,7 @@ mod sum;
 use std::collections::BTreeMap;
 
 pub use contributions::Contributions;
-pub use counter::{Counter, Distribution};
+pub use counter::{Counter, Observations};
 pub use memory::{available_bytes, give_back, peak_resident_bytes};
 pub use stage::{Stage, StageTime, Stopwatch};
 pub use sum::add_fields;
@@ -45,13 +45,13 @@ impl Stats {
         self.combine(name, Counter::Sum(value));
     }
 
-    /// Adds one observation to the distribution `name`, which reports count, mean, minimum and maximum.
+    /// Adds one observation to the summary `name`, which reports count, mean, minimum and maximum.
     pub fn observe(&mut self, name: &str, value: u64) {
-        self.combine(name, Counter::Distribution(Distribution::of(value)));
+        self.combine(name, Counter::Distribution(Observations::of(value)));
     }
 
-    /// Adds all observations of `distribution` to the distribution `name`.
-    pub fn distribution(&mut self, name: &str, distribution: Distribution) {
+    /// Adds a summary of observations to the summary `name`.
+    pub fn distribution(&mut self, name: &str, distribution: Observations) {
         self.combine(name, Counter::Distribution(distribution));
     }
 
@@ -68,7 +68,7 @@ impl Stats {
         result
     }
 
-    /// Adds everything in `other`. For the same figures on every run, merge in a fixed order.
+    /// Adds everything in `other`. A fixed order of merging gives the same figures on every run.
     pub fn merge(&mut self, other: &Stats) {
         for (name, counter) in &other.counters {
             self.combine(name, *counter);
@@ -78,22 +78,22 @@ impl Stats {
         }
     }
 
-    /// The counter `name`, if anything was counted under it.
+    /// Returns the counter `name`, if anything was counted under it.
     pub fn get(&self, name: &str) -> Option<Counter> {
         self.counters.get(name).copied()
     }
 
-    /// Time of `stage` so far, if it ran.
+    /// Returns the time of `stage` so far, if it ran.
     pub fn stage(&self, stage: Stage) -> Option<StageTime> {
         self.times.get(&stage).copied()
     }
 
-    /// All counters, sorted by name, so that a group's members are neighbours.
+    /// Returns all counters, sorted by name, so that members of a group are neighbours.
     pub fn counters(&self) -> impl Iterator<Item = (&str, Counter)> {
         self.counters.iter().map(|(name, &counter)| (name.as_str(), counter))
     }
 
-    /// All stage times in the order of the pipeline.
+    /// Returns all stage times in the order of the pipeline.
     pub fn stages(&self) -> impl Iterator<Item = (Stage, StageTime)> {
         self.times.iter().map(|(&stage, &time)| (stage, time))
     }

@@ -1,16 +1,16 @@
-//! Statistics as text for people and JSON for programs.
+//! Statistics as text and as JSON.
 
 use super::{Counter, Stats};
 use serde_json::{Map, Value, json};
 use std::fmt::Write;
 
-/// The number without the sign of one that is shown as 0.
+/// Returns the number; 0 without sign if it is displayed as 0.
 fn unsigned_zero(x: f64) -> f64 {
     if x.abs() < 5e-7 { 0.0 } else { x }
 }
 
 impl Stats {
-    /// An aligned table: stage times first, then the counters by group.
+    /// Returns an aligned table: stage times first, then counters by group.
     pub fn to_text(&self) -> String {
         let mut text = String::new();
         // Writing to a String cannot fail, hence the `let _`.
@@ -50,7 +50,7 @@ impl Stats {
         text
     }
 
-    /// `{"times": {stage: {wall_seconds, cpu_seconds}}, "counters": {group: {name: value}}}`.
+    /// Returns `{"times": {stage: {wall_seconds, cpu_seconds}}, "counters": {group: {name: value}}}`.
     pub fn to_json(&self) -> Value {
         let times: Map<String, Value> =
             self.stages().map(|(stage, time)| (stage.key().to_owned(), json!(time))).collect();
@@ -75,7 +75,7 @@ fn split(key: &str) -> (&str, &str) {
     key.split_once('/').unwrap_or(("Other", key))
 }
 
-/// Digits in groups of three: `1 234 567`.
+/// Formats digits in groups of three: `1 234 567`.
 fn grouped(n: u64) -> String {
     let digits = n.to_string();
     let mut text = String::with_capacity(digits.len() + digits.len() / 3);

@@ -1,10 +1,10 @@
-//! Stages of a run, each timed.
+//! Stages of a run, and their times.
 
 use serde::Serialize;
 use std::ops::AddAssign;
 use std::time::Instant;
 
-/// A stage of the pipeline, in the order they run.
+/// A stage of the pipeline, in order of execution.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Stage {
@@ -12,11 +12,11 @@ pub enum Stage {
     Load,
     /// Building the acceleration structure and the tables of materials and lights.
     Build,
-    /// Planning settings: renders that are discarded, and the measuring of their errors.
+    /// Planning settings: trial renders and measurements of their errors.
     Plan,
-    /// Eye rays and specular chains, in methods where they are a pass of their own.
+    /// Eye rays and specular chains, in methods with a separate eye pass.
     EyePass,
-    /// Photon paths: lights become virtual point lights.
+    /// Photon paths, which become virtual point lights.
     LightPass,
     /// Clustering the virtual point lights.
     Tree,
@@ -24,13 +24,13 @@ pub enum Stage {
     Records,
     /// Splatting and adapting records.
     Splat,
-    /// Lighting of eye samples by cuts or gathering; all of it in methods without an eye pass.
+    /// Lighting of eye samples by cuts or gathering; all rendering in methods without an eye pass.
     Render,
-    /// Denoising the picture.
+    /// Denoising the image.
     Denoise,
-    /// Path-tracing pixels to measure the picture's error.
+    /// Path tracing of pixels to measure the image's error.
     Verify,
-    /// Encoding and writing the pictures.
+    /// Encoding and writing the images.
     Write,
     /// The whole run, from the command to the last file.
     Total,
@@ -54,7 +54,7 @@ impl Stage {
         Stage::Total,
     ];
 
-    /// Name for people.
+    /// Returns the name for messages.
     pub fn name(self) -> &'static str {
         match self {
             Stage::Load => "load",
@@ -73,7 +73,7 @@ impl Stage {
         }
     }
 
-    /// Name in machine-readable output.
+    /// Returns the name in machine-readable output.
     pub fn key(self) -> &'static str {
         match self {
             Stage::EyePass => "eye_pass",
@@ -93,7 +93,7 @@ pub struct StageTime {
 }
 
 impl StageTime {
-    /// Returns the time without that of `part`.
+    /// Returns the time minus that of `part`.
     pub fn without(self, part: StageTime) -> StageTime {
         StageTime {
             wall_seconds: self.wall_seconds - part.wall_seconds,
@@ -109,7 +109,7 @@ impl AddAssign for StageTime {
     }
 }
 
-/// Measures wall and CPU time since its start.
+/// A watch of wall-clock and CPU time.
 #[derive(Clone, Copy, Debug)]
 pub struct Stopwatch {
     wall: Instant,

@@ -1,4 +1,4 @@
-//! Sums of counts of parts of the work.
+//! Sums of structs of counts.
 
 /// Implements `+=` field by field.
 #[macro_export]
@@ -7,7 +7,7 @@ macro_rules! add_fields {
         impl std::ops::AddAssign for $counts {
             #[inline]
             fn add_assign(&mut self, other: $counts) {
-                // Without `..`, so that a field cannot be forgotten.
+                // The pattern has no `..`, so that no field is forgotten.
                 let $counts { $($field),+ } = other;
                 $(self.$field += $field;)+
             }

@@ -2,10 +2,9 @@
 
 use super::store::hash_debug;
 use super::{Study, StudyError};
-use base::stats::Stats;
 use embree::BuildQuality;
-use readers::{Level, LoadOptions, load};
-use render::session::{OpenError, Session};
+use readers::{LoadOptions, Severity};
+use render::session::{OpenError, Opened, Session};
 use std::path::{Path, PathBuf};
 use world::view::View;
 
@@ -35,13 +34,14 @@ impl Subject {
 
     /// Builds its acceleration structure anew.
     pub(super) fn rebuild(&mut self, quality: BuildQuality) -> Result<(), StudyError> {
-        Ok(self.session.rebuild(quality)?)
+        let rebuilt = self.session.world.rebuild(quality);
+        rebuilt.map_err(|source| OpenError::Build { path: PathBuf::from(&self.name), source }.into())
     }
 
     /// Loads a scene and prepares it.
     pub(super) fn load(path: &Path, study: &Study) -> Result<Subject, StudyError> {
-        let mut loaded = load(path, &LoadOptions::default()).map_err(OpenError::Scene)?;
-        let warnings = loaded.warnings.iter().filter(|w| w.level == Level::Warning).count();
+        let Opened { mut session, warnings, .. } = Session::open(path, &LoadOptions::default())?;
+        let warnings = warnings.iter().filter(|w| w.severity == Severity::Warning).count();
         if warnings > 0 {
             (study.say)(&format!(
                 "{}: {warnings} things are not modelled; `info` lists them",
@@ -49,11 +49,10 @@ impl Subject {
             ));
         }
         // The hash does not depend on the paths of its files.
-        let sources = std::mem::take(&mut loaded.scene.sources);
-        let hash = hash_debug(&(&loaded.scene, &loaded.cameras));
-        loaded.scene.sources = sources;
-        let triangles = loaded.scene.triangle_count();
-        let session = Session::of(loaded, path, Stats::new())?;
+        let sources = std::mem::take(&mut session.world.scene.sources);
+        let hash = hash_debug(&(&session.world.scene, &session.cameras));
+        session.world.scene.sources = sources;
+        let triangles = session.world.scene.triangle_count();
         let view = View::whole(session.cameras.still, study.plan.resolution);
         Ok(Subject { name: session.world.scene.name.clone(), hash, triangles, session, view })
     }

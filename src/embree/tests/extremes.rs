@@ -1,4 +1,4 @@
-//! Empty scenes, unusable rays, refused meshes, and Embree's own errors.
+//! Tests of empty scenes, unusable rays, refused meshes, and Embree's own errors.
 
 use super::super::*;
 use super::devices;
@@ -124,7 +124,7 @@ fn meshes_that_embree_would_mistreat_are_refused() {
         matches!(error, Some(EmbreeError::VertexIndex { mesh: 0, triangle: 0, index: 3, vertices: 3 })),
         "{error:?}"
     );
-    // Coordinates up to the maximum, and triangles without area, are accepted as Embree accepts them.
+    // Embree accepts coordinates up to the maximum, and triangles without area.
     let huge = TRIANGLE.map(|p| p * 1.8e17);
     assert!(Accel::build(&device, &[mesh(&huge, &[[0, 1, 2]])]).is_ok());
     let flat = Accel::build(&device, &[mesh(&[Vec3::Z; 3], &[[0, 1, 2], [0, 0, 0]])]).unwrap();
@@ -155,7 +155,7 @@ fn versions_below_4_3_and_from_5_are_refused() {
 
 #[test]
 fn subnormal_numbers_survive() {
-    // Embree flushes them on its own threads; on ours that would be undefined behaviour.
+    // Embree flushes subnormal numbers on its own threads. On other threads that would be undefined behaviour.
     let accel = Accel::build(&Device::new(2).unwrap(), &[mesh(&TRIANGLE, &[[0, 1, 2]])]).unwrap();
     assert!(accel.occluded(&Ray::new(Vec3::ZERO, Vec3::Z)));
     let subnormal = black_box(f32::MIN_POSITIVE) * black_box(0.5);

@@ -1,4 +1,4 @@
-//! Embree's answers against a brute-force intersection in double precision, through every path.
+//! Tests of Embree's answers against a brute-force intersection in double precision, for every kind of query.
 
 mod extremes;
 mod oracle;
@@ -7,7 +7,7 @@ use super::*;
 use oracle::{Soup, Verdict};
 use rayon::prelude::*;
 
-/// One device for each set of kernels that this processor has.
+/// Returns one device for each set of kernels that this processor has.
 fn devices() -> Vec<Device> {
     let mut configs = vec!["threads=2"];
     if cfg!(target_arch = "x86_64") {
@@ -135,7 +135,7 @@ fn assert_real(soup: &Soup, ray: &Ray, occluder: Occluder) {
 fn only_valid_lanes_are_traced_and_written() {
     let soup = Soup::random(300, 7);
     let rays = soup.rays(256, 8);
-    // Widths without kernels are traced by single rays.
+    // Single rays replace widths without kernels.
     let widths = [Width::Four, Width::Eight, Width::Sixteen];
     let masks = [0, 1, 0x8000, 0x5555, 0xf00f, 0x7fff];
     for (accel, width) in devices().iter().flat_map(|device| widths.map(|width| (soup.build(device), width)))
@@ -172,6 +172,6 @@ fn any_number_of_threads_gives_the_same_bits() {
     let accel = soup.build(&Device::new(4).unwrap());
     let parallel: Vec<_> = rays.par_iter().map(|ray| bits(accel.closest_hit(ray))).collect();
     assert_eq!(sequential, parallel);
-    // The structure may also be dropped on another thread than the one it was built on.
+    // The structure may be dropped on another thread.
     std::thread::spawn(move || drop(accel)).join().unwrap();
 }

@@ -3,7 +3,7 @@
 use super::super::*;
 use glam::{DVec3, Vec3};
 
-/// Uniform numbers in [0, 1) by splitmix64.
+/// A generator of uniform numbers in [0, 1) (splitmix64).
 pub struct Random(u64);
 
 impl Random {
@@ -15,7 +15,7 @@ impl Random {
         ((z ^ (z >> 31)) >> 40) as f32 / (1u64 << 24) as f32
     }
 
-    /// Uniform in the cube from -1 to 1.
+    /// Returns a uniform point of the cube from -1 to 1.
     pub fn point(&mut self) -> Vec3 {
         Vec3::new(self.next(), self.next(), self.next()) * 2.0 - Vec3::ONE
     }
@@ -27,14 +27,14 @@ impl From<TriangleId> for (u32, u32) {
     }
 }
 
-/// Three meshes of unconnected triangles in a cube, the middle one empty.
+/// Returns three meshes of unconnected triangles in a cube; the middle one is empty.
 pub struct Soup {
     meshes: [(Vec<Vec3>, Vec<[u32; 3]>); 3],
 }
 
 /// Brute-force answer for a ray.
 pub enum Verdict {
-    /// The ray passes an edge, or two triangles, or an end of the segment, within rounding.
+    /// Rounding decides: the ray passes an edge, two triangles, or an end of the segment.
     Close,
     /// No rounding can change the answer.
     Certain(Option<Met>),
@@ -46,7 +46,7 @@ pub struct Met {
     pub t: f64,
 }
 
-/// Distance in barycentric coordinates or relative t below which single precision may decide either way.
+/// Distance in barycentric coordinates, or relative distance in t, within which single precision decides.
 const ROUNDING: f64 = 1e-4;
 
 impl Soup {
@@ -64,7 +64,7 @@ impl Soup {
         Soup { meshes: [mesh(count / 2), mesh(0), mesh(count - count / 2)] }
     }
 
-    /// Segments of all lengths in and around the soup; one in four is a half-line.
+    /// Returns segments of all lengths in and around the triangles. One in four is a half-line.
     pub fn rays(&self, count: usize, seed: u64) -> Vec<Ray> {
         let mut random = Random(seed);
         (0..count)
@@ -100,13 +100,13 @@ impl Soup {
         })
     }
 
-    /// Distance of one triangle along the ray, with the tolerance of [`ROUNDING`] at its edges.
+    /// Returns the distance of one triangle along the ray, with the tolerance [`ROUNDING`] at its edges.
     pub fn distance(&self, ray: &Ray, id: TriangleId) -> Option<f64> {
         let (t, margin) = moeller_trumbore(ray, self.corners(id))?;
         (margin > -ROUNDING && t >= near(ray) - ROUNDING && t <= far(ray) + ROUNDING).then_some(t)
     }
 
-    /// Triangles that the ray crosses, and those of which rounding decides.
+    /// Returns the triangles that the ray crosses, and those for which rounding decides.
     pub fn crossed(&self, ray: &Ray) -> (Vec<TriangleId>, Vec<TriangleId>) {
         let (mut certain, mut close) = (Vec::new(), Vec::new());
         for id in self.ids() {
@@ -150,7 +150,7 @@ fn far(ray: &Ray) -> f64 {
     ray.t_far.into()
 }
 
-/// Möller and Trumbore 1997: t of the triangle's plane, and the smallest barycentric coordinate there.
+/// Computes t of the triangle's plane, and the minimum barycentric coordinate there (Möller and Trumbore 1997).
 fn moeller_trumbore(ray: &Ray, corners: [Vec3; 3]) -> Option<(f64, f64)> {
     let [a, b, c] = corners.map(|p| p.as_dvec3());
     let (origin, direction): (DVec3, DVec3) = (ray.origin.as_dvec3(), ray.direction.as_dvec3());

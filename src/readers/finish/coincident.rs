@@ -1,16 +1,21 @@
-//! Emitting triangles that lie on others, corner by corner: a lamp described twice.
+//! Removal of emitting triangles that coincide with others.
 //!
-//! Rays meet one of them, so that as a surface a lamp shines once; as a source of samples it would count twice.
+//! A ray hits one of two coincident triangles, so as a surface the emitter shines once. As a source of samples it would
+//! count twice.
 
-use crate::Place;
+use crate::Location;
 use crate::draft::{Draft, DraftMesh};
 use crate::error::{Log, SceneError};
 use base::math::Rgb;
 use glam::DVec3;
 use std::collections::HashSet;
 
-/// Drops emitting triangles with the corners, and the front, of an emitting one before.
-pub fn drop_coincident_emitters(draft: &mut Draft, place: &Place, log: &mut Log) -> Result<(), SceneError> {
+/// Drops emitting triangles with the corners and the front side of an earlier emitting triangle, with a warning.
+pub fn drop_coincident_emitters(
+    draft: &mut Draft,
+    place: &Location,
+    log: &mut Log,
+) -> Result<(), SceneError> {
     let mut seen = HashSet::new();
     let shines = |mesh: &&mut DraftMesh| mesh.emission.is_some_and(|emission| emission.radiance != Rgb::ZERO);
     for mesh in draft.meshes.iter_mut().filter(shines) {
@@ -34,9 +39,9 @@ pub fn drop_coincident_emitters(draft: &mut Draft, place: &Place, log: &mut Log)
     Ok(())
 }
 
-/// Bits of the corners, turned so that the least comes first; the front is the same.
+/// Returns the bits of the corners, rotated so that the smallest corner comes first. The front side is unchanged.
 fn turned_to_least(corners: [DVec3; 3]) -> [[u64; 3]; 3] {
-    // Adding 0 makes one zero of both.
+    // Adding 0 turns -0 into 0.
     let [a, b, c] = corners.map(|p| (p + DVec3::ZERO).to_array().map(f64::to_bits));
     [[a, b, c], [b, c, a], [c, a, b]].into_iter().min().unwrap_or([a, b, c])
 }

@@ -1,24 +1,26 @@
-//! Triangles that reach very far beyond what is around the camera, cut into smaller ones.
+//! Division of triangles that are very large compared with the camera's surroundings.
 //!
-//! A point on a triangle is known as precisely as the triangle is large: on a floor that reaches a million times as far
-//! as what stands on it, points would lie up to a tenth of that beside the ray. Edges are halved until they are no
-//! longer than a multiple of their distance from the camera. Whether they are follows from their ends alone, so that
-//! triangles which share an edge are cut alike and no gap opens between them.
+//! The precision of a point on a triangle is relative to the triangle's size. On a floor a million times as large as
+//! the objects on it, points would be off by up to a tenth of an object's size.
+//!
+//! Edges are halved until they are at most a multiple of their distance from the camera. The decision depends on the
+//! ends of an edge only. So triangles that share an edge divide it alike, and no gap opens between them.
 
-use super::recentre::Coordinates;
+use super::recentre::LocalCoordinates;
 use crate::draft::{Draft, DraftMesh};
 use glam::DVec3;
 use std::collections::BTreeMap;
 
-/// Maximum ratio of an edge's length to its distance from the camera, and to that of what is around the camera: points
-/// are precise to 1e-5 of that distance.
+/// Maximum ratio of an edge's length to its distance from the camera, or to the vicinity if that is larger.
+///
+/// Points are then precise to 1e-5 of that distance.
 const MAX_LENGTH: f64 = 64.0;
 
-/// Maximum number of triangles that are added. A floor as large as f64 allows takes some ten thousand.
+/// Maximum number of triangles to add. The largest floor that f64 can describe takes about ten thousand.
 const MAX_ADDED: usize = 1 << 17;
 
-/// Cuts the triangles of a draft where [`Coordinates::vicinity`] says that everything reaches much farther.
-pub fn divide(draft: &mut Draft, coordinates: &Coordinates) {
+/// Divides the triangles of a draft whose [`LocalCoordinates::vicinity`] is above 0.
+pub fn divide(draft: &mut Draft, coordinates: &LocalCoordinates) {
     if !(coordinates.vicinity > 0.0) {
         return;
     }
@@ -31,7 +33,7 @@ pub fn divide(draft: &mut Draft, coordinates: &Coordinates) {
     draft.meshes.iter_mut().for_each(|mesh| divide_mesh(mesh, is_long, &mut left));
 }
 
-/// Distance of a point from the segment between two others.
+/// Returns the distance of a point from the segment between two others.
 fn distance(point: DVec3, a: DVec3, b: DVec3) -> f64 {
     let (along, to_point) = (b - a, point - a);
     let t = (to_point.dot(along) / along.length_squared()).clamp(0.0, 1.0);
@@ -62,7 +64,7 @@ fn divide_mesh(mesh: &mut DraftMesh, is_long: impl Fn(DVec3, DVec3) -> bool, lef
     }
 }
 
-/// Adds the vertex between two others.
+/// Adds the vertex in the middle of an edge.
 fn add_middle(mesh: &mut DraftMesh, edge: [u32; 2]) -> u32 {
     fn add<T: Copy>(of: &mut Vec<T>, [a, b]: [u32; 2], middle: impl Fn(T, T) -> T) {
         if !of.is_empty() {
@@ -71,7 +73,7 @@ fn add_middle(mesh: &mut DraftMesh, edge: [u32; 2]) -> u32 {
     }
     let vertex = mesh.positions.len() as u32;
     add(&mut mesh.positions, edge, |a, b| 0.5 * a + 0.5 * b);
-    // Not of unit length, so that they are interpolated as before.
+    // The middle normal is not of unit length, so interpolation along the edge gives the values of the whole edge.
     add(&mut mesh.normals, edge, |a, b| 0.5 * a + 0.5 * b);
     add(&mut mesh.uvs, edge, |a, b| 0.5 * a + 0.5 * b);
     vertex
@@ -83,7 +85,7 @@ mod tests {
     use glam::{Vec2, Vec3};
     use scene::{Mesh, Scene};
 
-    /// A ball on a slanted floor that reaches so far to all sides.
+    /// Returns a ball on a slanted floor that reaches `reach` to all sides.
     fn ball_on_floor(reach: f64) -> Loaded {
         let text = format!(
             "resolution = [8, 8]\ncamera = {{ origin = [0.1, 0.6, 2.5], target = [0, 0, 0], fov = 60 }}\n\
@@ -122,7 +124,7 @@ mod tests {
                 assert!(a.distance(b) < 64.0 * far.max(f64::from(scene.vicinity)));
             }
             assert!((area / (4.0 * reach * reach) - 1.0).abs() < 1e-5, "{area}");
-            // Every edge but those around is that of one triangle on either side.
+            // Each inner edge belongs to one triangle on either side.
             let mut edges: Vec<[u32; 2]> =
                 floor.triangles.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]).collect();
             edges.sort_unstable();

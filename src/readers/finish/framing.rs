@@ -1,14 +1,15 @@
-//! Cameras for scenes that describe none: everything is in view.
+//! Cameras for scenes without one: they see the whole scene.
 
 use crate::draft::Draft;
 use base::math::unit;
 use glam::{DVec2, DVec3};
 
-/// Share of the film's height and width that is left free around the scene.
+/// Fraction of the film's height and width that stays empty around the scene.
 const MARGIN: f64 = 0.05;
 
-/// Returns a direction from a scene to its viewer: above its front, to the right. The front is +z where y is up, and
-/// -y where z is.
+/// Returns the direction from a scene to its viewer: above the front, to the right.
+///
+/// The front is +z if y is up, and -y if z is up.
 pub fn outlook(up: DVec3) -> DVec3 {
     let up = unit(up).unwrap_or(DVec3::Y);
     let front = if up.z.abs() > up.y.abs() { DVec3::NEG_Y } else { DVec3::Z };
@@ -18,8 +19,9 @@ pub fn outlook(up: DVec3) -> DVec3 {
     level * elevation.cos() + up * elevation.sin()
 }
 
-/// Moves a camera that is to see everything to the nearest point from which it sees all vertices, for its own
-/// direction and field of view; to `centre`, about which they are, if there are none.
+/// Moves a camera with `fits` to the nearest point from which it sees all vertices.
+///
+/// The direction and field of view stay. Without vertices the camera moves to `centre`.
 pub fn frame(draft: &mut Draft, centre: DVec3) {
     if !draft.shot.fits {
         return;

@@ -1,4 +1,4 @@
-//! Last steps of reading, for all formats alike: repairs, division of large meshes, and local coordinates.
+//! Last steps of reading, common to all formats: repairs, division of large triangles, and local coordinates.
 
 mod coincident;
 pub mod divide;

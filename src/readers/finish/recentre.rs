@@ -1,47 +1,49 @@
-//! From world coordinates in f64 to coordinates about the scene's centre in f32.
+//! Conversion of world coordinates in f64 to local coordinates in f32, relative to the scene's centre.
 //!
-//! A scene a millimetre across, a million units from the origin, loses no bit that f32 can hold: the
-//! subtraction happens in f64, before any rounding. The centre is the middle of the box around everything, or the
-//! camera where something lies very far beyond what is around it: triangles far away do not cost the precision of the
-//! others.
+//! The centre is subtracted in f64, before any rounding. So a scene of a millimetre, a million units from the origin,
+//! keeps the full precision of f32. The centre is the middle of the bounding box. If something lies very far beyond the
+//! camera's surroundings, the centre is the camera: far triangles do not cost the precision of near ones.
 //!
-//! Scenes that are very small or very large are given another unit of length, a power of two, so that no product of
-//! lengths leaves the range of f32.
+//! Very small and very large scenes get another unit of length, a power of two. So no product of lengths leaves the
+//! range of f32.
 
 use crate::draft::{Draft, DraftCamera, DraftMesh};
 use base::math::Rgb;
 use glam::{DVec3, Vec3};
 use scene::{Camera, Cameras, DeltaLight, MAX_RATIO, Material, Mesh, Projection, Relief, Scene};
 
-/// Number of corners, about, by which that distance is found.
-const CORNERS: usize = 1 << 16;
+/// Approximate number of corners that are sampled to compute the vicinity.
+const SAMPLED_CORNERS: usize = 1 << 16;
 
-/// Sizes of scenes that keep their unit, as exponents of two.
-const ORDINARY: std::ops::Range<i32> = -10..24;
+/// Sizes of scenes that keep their unit, as binary logarithms.
+const UNSCALED_SIZES: std::ops::Range<i32> = -10..24;
 
-/// Coordinates that a scene is rendered in.
+/// Local coordinates of a scene.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Coordinates {
+pub struct LocalCoordinates {
     /// World position of the local origin.
     pub centre: DVec3,
-    /// The local unit of length is two to this power in the world's.
+    /// Binary logarithm of the local unit of length in world units.
     pub exponent: i32,
-    /// Local distance from the camera within which it has a tenth of all corners, where everything reaches more than
-    /// [`MAX_RATIO`] times as far; else 0.
+    /// Local distance from the camera that contains a tenth of all corners, if the scene is more than [`MAX_RATIO`]
+    /// times larger; else 0.
     pub vicinity: f32,
 }
 
-impl Coordinates {
-    /// Coordinates for a draft.
-    pub fn of(draft: &Draft) -> Coordinates {
+impl LocalCoordinates {
+    /// Returns the coordinates for a draft.
+    pub fn of(draft: &Draft) -> LocalCoordinates {
         let lights = || draft.lights.iter().map(|light| light.1);
         let camera = draft.shot.camera.origin;
         let Some((low, high)) = bounds(corners(draft)) else {
             let others = bounds(lights().chain([camera])).unwrap_or_default();
-            return Coordinates { centre: 0.5 * others.0 + 0.5 * others.1, ..Coordinates::default() };
+            return LocalCoordinates {
+                centre: 0.5 * others.0 + 0.5 * others.1,
+                ..LocalCoordinates::default()
+            };
         };
         let (middle, diagonal) = (0.5 * low + 0.5 * high, (high - low).length());
-        // A camera that is to see everything has no place yet.
+        // A camera with `fits` has no position yet.
         let vicinity = if draft.shot.fits { diagonal } else { vicinity(draft, camera) };
         let (centre, vicinity) = match vicinity > 0.0 && diagonal > MAX_RATIO * vicinity {
             true => (camera, vicinity),
@@ -53,28 +55,28 @@ impl Coordinates {
             false => diagonal.max(camera.distance(centre)),
         };
         let exponent = size.log2().floor();
-        let has_size = exponent.is_finite() && !ORDINARY.contains(&(exponent as i32));
+        let has_size = exponent.is_finite() && !UNSCALED_SIZES.contains(&(exponent as i32));
         let exponent = if has_size { exponent as i32 } else { 0 };
-        let coordinates = Coordinates { centre, exponent, vicinity: 0.0 };
-        Coordinates { vicinity: (vicinity * coordinates.scale()) as f32, ..coordinates }
+        let coordinates = LocalCoordinates { centre, exponent, vicinity: 0.0 };
+        LocalCoordinates { vicinity: (vicinity * coordinates.scale()) as f32, ..coordinates }
     }
 
-    /// Local length of a world's unit.
+    /// Returns the local length of a world unit.
     pub fn scale(&self) -> f64 {
         f64::from(-self.exponent).exp2()
     }
 
-    /// The local position of a point.
+    /// Returns the local position of a point.
     pub fn local(&self, world: DVec3) -> Vec3 {
         ((world - self.centre) * self.scale()).as_vec3()
     }
 
-    /// The local intensity of a light: intensities fall with the square of lengths.
+    /// Returns the local intensity of a light. Intensities scale with the square of lengths.
     pub fn local_intensity(&self, intensity: Rgb) -> Rgb {
         (intensity.as_dvec3() * (self.scale() * self.scale())).as_vec3()
     }
 
-    /// A camera in local coordinates.
+    /// Returns a camera in local coordinates.
     pub fn local_camera(&self, c: &DraftCamera) -> Camera {
         let scale = self.scale();
         let length = |length: f32| (f64::from(length) * scale) as f32;
@@ -100,7 +102,7 @@ impl Coordinates {
     }
 }
 
-/// Corners of all triangles.
+/// Returns the corners of all triangles.
 fn corners(draft: &Draft) -> impl Iterator<Item = DVec3> {
     draft.meshes.iter().flat_map(|mesh| {
         let used = mesh.triangles.iter().flatten();
@@ -114,17 +116,17 @@ fn bounds(points: impl Iterator<Item = DVec3>) -> Option<(DVec3, DVec3)> {
     low.cmple(high).all().then_some((low, high))
 }
 
-/// Distance from `camera` within which it has a tenth of the corners.
+/// Returns the distance from `camera` that contains a tenth of the corners.
 fn vicinity(draft: &Draft, camera: DVec3) -> f64 {
     let count: usize = draft.meshes.iter().map(|mesh| 3 * mesh.triangles.len()).sum();
     let mut distances: Vec<f64> =
-        corners(draft).step_by(count.div_ceil(CORNERS).max(1)).map(|p| p.distance(camera)).collect();
+        corners(draft).step_by(count.div_ceil(SAMPLED_CORNERS).max(1)).map(|p| p.distance(camera)).collect();
     let tenth = distances.len() / 10;
     *distances.select_nth_unstable_by(tenth, f64::total_cmp).1
 }
 
-/// Returns the scene in other coordinates, and its cameras.
-pub(crate) fn recentre(draft: Draft, coordinates: &Coordinates) -> (Scene, Cameras) {
+/// Returns the scene in local coordinates, and its cameras.
+pub(crate) fn recentre(draft: Draft, coordinates: &LocalCoordinates) -> (Scene, Cameras) {
     let scale = coordinates.scale();
     let local = |p: DVec3| coordinates.local(p);
     let mesh = |m: DraftMesh| Mesh {
@@ -142,31 +144,20 @@ pub(crate) fn recentre(draft: Draft, coordinates: &Coordinates) -> (Scene, Camer
         resolution: draft.shot.resolution,
         crop: draft.shot.crop,
     };
-    let mut materials = draft.materials;
-    materials.iter_mut().for_each(|material| scale_heights(material, scale));
-    let scene = Scene {
-        name: draft.name,
-        sources: draft.sources,
-        max_depth: draft.max_depth,
-        hides_emitters: draft.hides_emitters,
+    let place = |(light, position)| place_light(light, position, coordinates);
+    let mut scene = Scene {
         meshes: draft.meshes.into_iter().map(mesh).collect(),
-        materials,
-        textures: draft.textures,
-        lights: draft
-            .lights
-            .into_iter()
-            .map(|(light, position)| place_light(light, position, coordinates))
-            .collect(),
-        environment: draft.environment,
-        discs: draft.discs,
+        lights: draft.lights.into_iter().map(place).collect(),
         centre: coordinates.centre,
         exponent: coordinates.exponent,
         vicinity: coordinates.vicinity,
+        ..draft.scene
     };
+    scene.materials.iter_mut().for_each(|material| scale_heights(material, scale));
     (scene, cameras)
 }
 
-/// Heights of reliefs in the local unit.
+/// Converts heights of reliefs to the local unit.
 fn scale_heights(material: &mut Material, by: f64) {
     if let Some(Relief::Heights { scale, .. }) = &mut material.relief {
         *scale = (f64::from(*scale) * by).clamp(f32::MIN.into(), f32::MAX.into()) as f32;
@@ -176,8 +167,8 @@ fn scale_heights(material: &mut Material, by: f64) {
     }
 }
 
-/// The light at a position in the world, in local coordinates.
-fn place_light(light: DeltaLight, world: DVec3, coordinates: &Coordinates) -> DeltaLight {
+/// Returns a light at a world position, in local coordinates.
+fn place_light(light: DeltaLight, world: DVec3, coordinates: &LocalCoordinates) -> DeltaLight {
     let position = coordinates.local(world);
     match light {
         DeltaLight::Point { intensity, .. } => {
@@ -196,7 +187,7 @@ mod tests {
     use crate::{LoadOptions, Loaded, load};
     use scene::DeltaLight;
 
-    /// Returns the same small room with everything moved by `offset` and scaled by `scale`.
+    /// Returns a small room, moved by `offset` and scaled by `scale`.
     fn room(scale: f64, offset: f64) -> Loaded {
         let at = |x: f64, y: f64, z: f64| {
             format!("[{:e}, {:e}, {:e}]", x * scale + offset, y * scale + offset, z * scale + offset)
@@ -226,7 +217,7 @@ mod tests {
         for (a, b) in here.scene.meshes.iter().zip(&there.scene.meshes) {
             let worst =
                 a.positions.iter().zip(&b.positions).map(|(a, b)| (a - b).length()).fold(0.0, f32::max);
-            // f64 at 1e6 is good to 1e-10, f32 near 4 to 2.4e-7.
+            // f64 is precise to 1e-10 at 1e6, f32 to 2.4e-7 near 4.
             assert!(worst <= 5e-7, "{worst}");
         }
         assert!((here.cameras.still.origin - there.cameras.still.origin).length() < 5e-7);

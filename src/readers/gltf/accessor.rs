@@ -1,15 +1,17 @@
-//! Accessors to numbers. Everything that a file says of them is checked before memory is read or asked for.
+//! Conversion of accessors to numbers.
+//!
+//! The file's statements about an accessor are checked before memory is read or allocated.
 
-use super::document::Document;
+use super::document::GltfFile;
 use crate::error::SceneError;
 use gltf_json::accessor::{Accessor, ComponentType, Type};
 use gltf_json::validation::{Checked, USize64};
 use gltf_json::{Index, buffer};
 
-/// Most elements of an accessor that has no bytes of its own.
+/// Maximum number of elements of an accessor without bytes of its own.
 const MAX_ZEROS: u64 = 1 << 24;
 
-/// Range of elements in the bytes of a view.
+/// Elements in the bytes of a view.
 struct Elements<'a> {
     bytes: &'a [u8],
     stride: usize,
@@ -23,9 +25,10 @@ impl Elements<'_> {
     }
 }
 
-impl Document {
-    /// Vectors of `N` numbers of the accessor, integers as shares of their range where it is `normalized`; `what`
-    /// names it.
+impl GltfFile {
+    /// Returns the vectors of `N` numbers of the accessor; `what` names it in errors.
+    ///
+    /// If the accessor is `normalized`, integers are fractions of their range.
     pub fn vectors<const N: usize>(
         &self,
         index: Index<Accessor>,
@@ -74,7 +77,7 @@ impl Document {
         Ok(vectors)
     }
 
-    /// Unsigned integers of the accessor.
+    /// Returns the unsigned integers of the accessor.
     pub fn integers(&self, index: Index<Accessor>, what: &str) -> Result<Vec<u32>, SceneError> {
         let accessor = self.get(index, "accessor")?;
         let wrong = |problem: &str| self.wrong(format!("{what}: accessor {} {problem}", index.value()));
@@ -117,7 +120,7 @@ impl Document {
     }
 }
 
-/// Number of components of a type.
+/// Returns the number of components of a type.
 fn components(kind: &Checked<Type>) -> Option<usize> {
     match kind {
         Checked::Valid(kind) => Some(kind.multiplicity()),
@@ -129,7 +132,7 @@ fn unsigned(bytes: &[u8]) -> u32 {
     bytes.iter().rev().fold(0, |value, &byte| value << 8 | u32::from(byte))
 }
 
-/// A component of a vector; `normalized` integers as shares of their range.
+/// Returns a component of a vector. If `normalized`, integers are fractions of their range.
 fn number(kind: ComponentType, bytes: &[u8], normalized: bool) -> f32 {
     let bits = unsigned(bytes);
     let (value, range) = match kind {

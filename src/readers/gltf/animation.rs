@@ -1,6 +1,6 @@
 //! Animated transforms of nodes.
 
-use super::document::Document;
+use super::document::GltfFile;
 use super::nodes::{Local, quaternion};
 use crate::error::SceneError;
 use glam::{DQuat, DVec3};
@@ -12,19 +12,19 @@ pub(super) struct Track {
     pub node: usize,
     property: Property,
     interpolation: Interpolation,
-    /// Seconds of the keys, ascending.
+    /// Times of the keys in seconds, ascending.
     times: Vec<f32>,
-    /// A value a key; for splines tangent in, value and tangent out.
+    /// Value of each key. A spline has three values per key: tangent in, value, tangent out.
     values: Vec<[f32; 4]>,
 }
 
 impl Track {
-    /// First and last time of its keys, in seconds.
+    /// Returns the first and last time of the keys, in seconds.
     pub fn span(&self) -> [f32; 2] {
         [self.times[0], self.times[self.times.len() - 1]]
     }
 
-    /// Sets the property as it is at `time`.
+    /// Sets the property to its value at `time`.
     pub fn apply(&self, local: &mut Local, time: f64) {
         let Local::Steps { scale, rotation, translation } = local else { return };
         match self.property {
@@ -72,7 +72,7 @@ impl Track {
         if !is_spline {
             return At::Between(after - 1, t);
         }
-        // The specification's appendix on interpolation: cubic Hermite splines.
+        // glTF 2.0 specification, appendix C: cubic Hermite spline.
         let (t2, t3) = (t * t, t * t * t);
         let weights = [
             2.0 * t3 - 3.0 * t2 + 1.0,
@@ -85,16 +85,16 @@ impl Track {
     }
 }
 
-/// Values that a moment lies at or between.
+/// Indices of the values at or around a time.
 enum At {
     Key(usize),
     Between(usize, f64),
     Spline { points: [usize; 4], weights: [f64; 4] },
 }
 
-/// Reads the tracks of an animation that move the given nodes.
+/// Reads the tracks of an animation that move the wanted nodes.
 pub(super) fn tracks(
-    document: &Document,
+    document: &GltfFile,
     animation: &Animation,
     is_wanted: impl Fn(usize) -> bool,
 ) -> Result<Vec<Track>, SceneError> {
@@ -104,7 +104,7 @@ pub(super) fn tracks(
     Ok(tracks?.into_iter().flatten().collect())
 }
 
-fn track(document: &Document, animation: &Animation, channel: &Channel) -> Result<Option<Track>, SceneError> {
+fn track(document: &GltfFile, animation: &Animation, channel: &Channel) -> Result<Option<Track>, SceneError> {
     let what = format!("the animation of node {}", channel.target.node.value());
     let wrong = |problem: &str| document.wrong(format!("{what} {problem}"));
     let property = match channel.target.path {

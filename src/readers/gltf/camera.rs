@@ -1,9 +1,9 @@
 //! Cameras, and their animation as a camera path.
 
 use super::animation::{self, Track};
-use super::document::Document;
+use super::document::GltfFile;
 use super::nodes::{Local, Placed};
-use super::report::Report;
+use super::report::Findings;
 use crate::draft::{DEFAULT_RESOLUTION, DraftCamera, Shot};
 use crate::error::SceneError;
 use base::math::{right_of, unit};
@@ -12,20 +12,22 @@ use gltf_json::camera::{Camera, Type};
 use gltf_json::validation::Checked;
 use scene::{MAX_FRAMES, PixelFilter, Projection};
 
-/// Frames a second of animations, which glTF counts in seconds.
+/// Default frames per second of animations. glTF counts in seconds.
 pub(crate) const FRAMES_PER_SECOND: f64 = 24.0;
 
-/// A camera of a file, in a world of which the file is a part.
+/// Cameras of a file, and its transform to the world.
 pub(super) struct Viewer<'a> {
-    pub document: &'a Document,
+    pub document: &'a GltfFile,
     pub tree: &'a [Placed],
     pub to_world: DMat4,
     pub fps: f64,
 }
 
 impl Viewer<'_> {
-    /// The shot of the file's first camera, or of that which `wanted` names or numbers from 1; none without cameras.
-    pub fn shot(&self, wanted: Option<&str>, report: &mut Report) -> Result<Option<Shot>, SceneError> {
+    /// Returns the shot of the file's first camera, or of the one that `wanted` names or numbers from 1.
+    ///
+    /// Returns `None` for files without cameras.
+    pub fn shot(&self, wanted: Option<&str>, report: &mut Findings) -> Result<Option<Shot>, SceneError> {
         let nodes = &self.document.root.nodes;
         let mut cameras = Vec::new();
         for (at, placed) in self.tree.iter().enumerate() {
@@ -34,7 +36,7 @@ impl Viewer<'_> {
             }
         }
         let name = |at: usize| nodes[self.tree[at].node].name.as_deref().unwrap_or_default();
-        // Numbers and names, of cameras without name in the file the numbers alone.
+        // Lists numbers and names; a camera without name has a number only.
         let names = |cameras: &[(usize, &Camera)]| {
             let named = |(i, (at, _)): (usize, &(usize, &Camera))| match name(*at) {
                 "" => (i + 1).to_string(),
@@ -74,13 +76,13 @@ impl Viewer<'_> {
         Ok(Some(Shot { camera: still, fits: false, path, resolution, crop: None }))
     }
 
-    /// One camera a frame, if an animation moves it.
+    /// Returns one camera per frame, if an animation moves the camera.
     fn path(
         &self,
         at: usize,
         lens: &Lens,
         resolution: [u32; 2],
-        report: &mut Report,
+        report: &mut Findings,
     ) -> Result<Vec<DraftCamera>, SceneError> {
         let chain: Vec<usize> = std::iter::successors(Some(at), |&at| self.tree[at].parent).collect();
         let is_on_the_way = |node: usize| chain.iter().any(|&at| self.tree[at].node == node);
@@ -117,7 +119,7 @@ impl Viewer<'_> {
         (0..frames).map(frame).collect()
     }
 
-    /// Transform to the file's coordinates of the first node in a chain of parents at a time in seconds.
+    /// Returns the transform of the first node in a chain of parents to the file's coordinates, at a time in seconds.
     fn moved(&self, chain: &[usize], tracks: &[Track], time: f64) -> DMat4 {
         chain.iter().rev().fold(DMat4::IDENTITY, |to_file, &at| {
             let node = self.tree[at].node;
@@ -150,7 +152,7 @@ impl Viewer<'_> {
 /// Projection of a camera.
 #[derive(Clone, Copy)]
 struct Lens {
-    /// Tangent of half the vertical field of view, or half the film's height in a parallel projection.
+    /// Tangent of half the vertical field of view; half the film's height for a parallel projection.
     half_height: f64,
     aspect: Option<f64>,
     near: f64,
@@ -182,7 +184,7 @@ impl Lens {
         }
     }
 
-    /// A film of the default's area in the camera's aspect ratio.
+    /// Returns a film of the default area in the camera's aspect ratio.
     fn resolution(&self) -> [u32; 2] {
         let [width, height] = DEFAULT_RESOLUTION.map(f64::from);
         match self.aspect.filter(|aspect| (0.01..=100.0).contains(aspect)) {

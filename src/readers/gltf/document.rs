@@ -1,13 +1,13 @@
 //! The container: JSON, binary chunk and buffers of a `.gltf` or `.glb` file.
 
-use crate::error::{Place, SceneError};
+use crate::error::{Location, SceneError};
 use crate::file::{fnv1a, folder_of, read_file};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use gltf_json::{Index, Root, buffer, root::Get};
 use std::path::{Path, PathBuf};
 
-/// Extensions that are read, wholly or as far as the report says.
+/// Extensions that are read, at least in part.
 const KNOWN: [&str; 12] = [
     "KHR_lights_punctual",
     "KHR_materials_anisotropy",
@@ -24,33 +24,33 @@ const KNOWN: [&str; 12] = [
 ];
 
 /// A file with its buffers.
-pub(super) struct Document {
+pub(super) struct GltfFile {
     pub root: Root,
-    /// The file, for messages.
-    pub place: Place,
-    /// Folder that file names are relative to.
+    /// Location of the file, for messages.
+    pub place: Location,
+    /// Folder to which file names are relative.
     pub folder: PathBuf,
-    /// Files read, with the hash of their bytes.
+    /// Files read, with the hash of the bytes of each.
     pub sources: Vec<(PathBuf, u64)>,
     buffers: Vec<Vec<u8>>,
 }
 
-impl Document {
+impl GltfFile {
     /// Reads the file, to which `from` refers, and its buffers.
-    pub fn open(path: &Path, from: &Place) -> Result<Document, SceneError> {
+    pub fn open(path: &Path, from: &Location) -> Result<GltfFile, SceneError> {
         let bytes = read_file(path, from)?;
-        let place = Place::file(path);
+        let place = Location::file(path);
         let (json, binary) = match bytes.starts_with(b"glTF") {
             true => chunks(&bytes).map_err(|what| SceneError::mesh(place.clone(), what))?,
             false => (&bytes[..], None),
         };
         let root: Root = serde_json::from_slice(json).map_err(|error| {
             let is_text = binary.is_none() && !bytes.starts_with(b"glTF");
-            let place = if is_text { Place::line(path, error.line() as u32) } else { place.clone() };
+            let place = if is_text { Location::line(path, error.line() as u32) } else { place.clone() };
             place.malformed(error.to_string())
         })?;
         check_extensions(&root, &place)?;
-        let mut document = Document {
+        let mut document = GltfFile {
             root,
             folder: folder_of(path).to_owned(),
             sources: vec![(path.to_owned(), fnv1a(&bytes))],
@@ -64,7 +64,7 @@ impl Document {
         Ok(document)
     }
 
-    /// The object of an index.
+    /// Returns the object of an index.
     pub fn get<T>(&self, index: Index<T>, what: &str) -> Result<&T, SceneError>
     where
         Root: Get<T>,
@@ -73,7 +73,7 @@ impl Document {
         self.root.get(index).ok_or_else(missing)
     }
 
-    /// The bytes of a view of a buffer.
+    /// Returns the bytes of a view of a buffer.
     pub fn view(&self, index: Index<buffer::View>) -> Result<&[u8], SceneError> {
         let view = self.get(index, "buffer view")?;
         let buffer = self.buffers.get(view.buffer.value()).map_or(&[][..], Vec::as_slice);
@@ -83,7 +83,7 @@ impl Document {
         bytes.ok_or_else(|| self.wrong(format!("buffer view {} reaches beyond its buffer", index.value())))
     }
 
-    /// The bytes behind a URI: its own, or those of a file beside this one, whose name is returned then.
+    /// Returns the bytes in a data URI, or the path of the file that a URI names.
     pub fn resolve(&self, uri: &str) -> Result<Resolved, SceneError> {
         let Some(data) = uri.strip_prefix("data:") else {
             return Ok(Resolved::File(self.folder.join(percent_decoded(uri))));
@@ -93,7 +93,7 @@ impl Document {
         Ok(Resolved::Bytes(bytes.ok_or_else(|| self.wrong("a data URI is not in base64".into()))?))
     }
 
-    /// The error of damaged contents.
+    /// Returns the error of damaged content.
     pub fn wrong(&self, what: String) -> SceneError {
         SceneError::mesh(self.place.clone(), what)
     }
@@ -121,7 +121,7 @@ impl Document {
     }
 }
 
-/// Bytes behind a URI.
+/// Content of a URI.
 pub(super) enum Resolved {
     Bytes(Vec<u8>),
     File(PathBuf),
@@ -150,7 +150,7 @@ fn chunks(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), String> {
     Ok((json, binary))
 }
 
-fn check_extensions(root: &Root, place: &Place) -> Result<(), SceneError> {
+fn check_extensions(root: &Root, place: &Location) -> Result<(), SceneError> {
     let unknown = root.extensions_required.iter().find(|name| !KNOWN.contains(&name.as_str()));
     let Some(name) = unknown else { return Ok(()) };
     let remedy = match name.as_str() {
@@ -163,7 +163,7 @@ fn check_extensions(root: &Root, place: &Place) -> Result<(), SceneError> {
     Err(place.wrong(format!("the file requires the extension {name}, which is not supported"), remedy))
 }
 
-/// Names of extensions in use that are not read at all.
+/// Returns the names of used extensions that are not read at all.
 pub(super) fn unread_extensions(root: &Root) -> impl Iterator<Item = &String> {
     root.extensions_used.iter().filter(|name| !KNOWN.contains(&name.as_str()))
 }

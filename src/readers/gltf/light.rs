@@ -1,11 +1,11 @@
 //! Punctual lights (`KHR_lights_punctual`).
 //!
-//! Units: the extension counts in candela (point, spot) and lux (directional), radiance of surfaces in candela a square
-//! metre. They are taken as W/sr, W/m² and W/(sr m²), so that their proportions hold; only Blender writes lights, and
-//! not surfaces, in units 683 times as small as its watts, by which its lights are divided.
+//! Units: the extension counts in candela (point, spot) and lux (directional), and surface radiance in cd/m². These
+//! numbers are read as W/sr, W/m² and W/(sr m²), so proportions hold. Blender's exporter converts the watts of lights,
+//! but not of surfaces, by 683 lm/W; its lights are divided by that factor.
 
-use super::document::Document;
-use super::report::Report;
+use super::document::GltfFile;
+use super::report::Findings;
 use crate::error::SceneError;
 use base::math::{Rgb, unit};
 use glam::{DMat4, DVec3, Vec3};
@@ -13,23 +13,23 @@ use gltf_json::extensions::scene::khr_lights_punctual::{Light, Type};
 use gltf_json::validation::Checked;
 use scene::DeltaLight;
 
-/// Lumens that Blender's exporter counts for a watt of its lights.
+/// Lumens per watt that Blender's exporter writes for lights.
 const BLENDER_LUMENS_PER_WATT: f32 = 683.0;
 
-/// Units of the file's lights for one of the renderer's.
-pub(super) fn lumens_per_watt(document: &Document) -> f32 {
+/// Returns the units of the file's lights per unit of the renderer.
+pub(super) fn lumens_per_watt(document: &GltfFile) -> f32 {
     let generator = document.root.asset.generator.as_deref().unwrap_or_default();
     if generator.contains("Blender") { BLENDER_LUMENS_PER_WATT } else { 1.0 }
 }
 
-/// Returns the light of a node and its position in the world.
+/// Returns the light of a node, and its world position.
 pub(super) fn read(
     light: &Light,
     name: &str,
     to_world: &DMat4,
     lumens_per_watt: f32,
-    document: &Document,
-    report: &mut Report,
+    document: &GltfFile,
+    report: &mut Findings,
 ) -> Result<(DeltaLight, DVec3), SceneError> {
     let power = Rgb::from(light.color) * (light.intensity / lumens_per_watt);
     let axis = unit(to_world.transform_vector3(DVec3::NEG_Z));

@@ -1,14 +1,16 @@
-//! Metallic-roughness materials and their extensions, as principled materials.
+//! Conversion of metallic-roughness materials and their extensions to principled materials.
 //!
-//! Deviations: a sheet that transmits (no thickness) is smooth, and transmits wholly or not at all. Light that a volume
-//! absorbs depends on its stated thickness, not on a ray's way through it. A clear coat has the principled material's
-//! shape, which at full strength reflects a quarter of an extension's coat; so has sheen.
+//! Deviations:
+//! - A sheet that transmits (no thickness) is smooth, and transmits fully or not at all.
+//! - Absorption by a volume depends on the stated thickness, not on the length of a ray inside.
+//! - A clear coat is that of the principled material, which reflects a quarter of the extension's coat.
+//! - Sheen is that of the principled material.
 
-use super::Importer;
-use super::texture::Slot;
+use super::importer::{Importer, MaterialUse};
+use super::texture::TextureUse;
+use crate::decode::Channel;
 use crate::error::SceneError;
-use crate::picture::Channel;
-use crate::plan::Look;
+use crate::plan::Appearance;
 use base::math::Rgb;
 use gltf_json::Index;
 use gltf_json::extensions::material::{Material as Extensions, Volume};
@@ -18,14 +20,14 @@ use gltf_json::validation::Checked;
 use scene::{Emission, Lobe, Material, Principled, Reflectance, Relief, Share};
 use serde_json::Value;
 
-/// Extensions of materials that are read from their JSON.
+/// Extensions that are read from their JSON.
 const RAW: [&str; 3] = ["KHR_materials_clearcoat", "KHR_materials_sheen", "KHR_materials_anisotropy"];
-/// Roughness below which glass is smooth.
+/// Roughness up to which glass is smooth.
 const MAX_SMOOTH: f32 = 0.03;
 
-/// Roughness α below which a surface is as smooth as one of this.
+/// Minimum roughness α across an anisotropic lobe.
 const MIN_ALPHA: f32 = 1e-3;
-/// Principled materials have a ratio of α across over along of 1 less this times their anisotropy.
+/// Factor c of the principled material: the ratio of α across to α along is 1 - c · anisotropy.
 const ANISOTROPY_TO_SQUARE: f32 = 0.9;
 
 const RED: Channel = Channel::One(0);
@@ -33,17 +35,9 @@ const GREEN: Channel = Channel::One(1);
 const BLUE: Channel = Channel::One(2);
 const ALPHA: Channel = Channel::One(3);
 
-/// Surfaces of a material.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Surface {
-    pub look: Look,
-    /// Set of texture coordinates of its textures.
-    pub uv_set: u32,
-}
-
 impl Importer<'_> {
-    /// Surfaces of a material of the file, or of primitives without one.
-    pub(super) fn surface(&mut self, index: Option<Index<Source>>) -> Result<Surface, SceneError> {
+    /// Returns the material of a primitive; `None` stands for the default material.
+    pub(super) fn surface(&mut self, index: Option<Index<Source>>) -> Result<MaterialUse, SceneError> {
         let number = index.map(|index| index.value());
         if let Some(surface) = self.surfaces.get(&number) {
             return Ok(*surface);
@@ -63,18 +57,18 @@ impl Importer<'_> {
         let emission = self.emission(source, &name)?;
         let material = self.material(source, &name)?;
         let material = self.contents.add_material(material, document.place.clone());
-        let surface = Surface { look: Look { material, emission }, uv_set };
+        let surface = MaterialUse { appearance: Appearance { material, emission }, uv_set };
         self.surfaces.insert(number, surface);
         Ok(surface)
     }
 
-    /// The one set of texture coordinates that is kept: that of the material's first texture.
+    /// Returns the set of texture coordinates of the material's first texture. Other sets are not read.
     fn uv_set(&mut self, source: &Source, name: &str) -> u32 {
         let base = &source.pbr_metallic_roughness;
         let slots = [&base.base_color_texture, &base.metallic_roughness_texture, &source.emissive_texture];
-        let normal = source.normal_texture.iter().map(|info| Slot::of_normal(info).set);
+        let normal = source.normal_texture.iter().map(|info| TextureUse::of_normal(info).set);
         let sets: Vec<u32> =
-            slots.into_iter().flatten().map(|info| Slot::of(info).set).chain(normal).collect();
+            slots.into_iter().flatten().map(|info| TextureUse::of(info).set).chain(normal).collect();
         if sets.windows(2).any(|pair| pair[0] != pair[1]) {
             let what = "a material with several sets of texture coordinates is not modelled";
             self.report.lacks(what, "the first is used", name);
@@ -100,7 +94,7 @@ impl Importer<'_> {
             return Ok(None);
         }
         let texture = match texture {
-            Some(info) => self.texture(&Slot::of(info), Channel::Colour, name)?,
+            Some(info) => self.texture(&TextureUse::of(info), Channel::Colour, name)?,
             None => None,
         };
         Ok(Some(Emission { radiance: factor, texture, two_sided: source.double_sided }))
@@ -151,7 +145,7 @@ impl Importer<'_> {
         Ok(Material { principled: Some(Box::new(principled)), ..material })
     }
 
-    /// Clear coat, sheen and anisotropy.
+    /// Reads clear coat, sheen and anisotropy.
     fn layers(
         &mut self,
         extensions: &serde_json::Map<String, Value>,
@@ -193,7 +187,7 @@ impl Importer<'_> {
         Ok(())
     }
 
-    /// Anisotropy: α along the extension's direction is that between α and 1 at the square of its strength.
+    /// Reads anisotropy: α along the extension's direction is α + (1 - α) strength².
     fn stretch(&mut self, anisotropy: &Value, principled: &mut Principled, name: &str) {
         let strength = number(anisotropy, "anisotropyStrength").unwrap_or(0.0).clamp(0.0, 1.0);
         if !(strength > 0.0) {
@@ -221,7 +215,7 @@ impl Importer<'_> {
         principled.anisotropic_rotation = if rotation.is_finite() { rotation } else { 0.0 };
     }
 
-    /// A factor from 0 to 1, times a channel of a texture.
+    /// Returns a factor from 0 to 1, times a channel of a texture.
     fn share(
         &mut self,
         factor: f32,
@@ -231,7 +225,7 @@ impl Importer<'_> {
     ) -> Result<Share, SceneError> {
         let factor = if factor.is_finite() { factor.clamp(0.0, 1.0) } else { 0.0 };
         let texture = match texture {
-            Some(info) if factor > 0.0 => self.texture(&Slot::of(info), channel, name)?,
+            Some(info) if factor > 0.0 => self.texture(&TextureUse::of(info), channel, name)?,
             _ => None,
         };
         Ok(match texture {
@@ -257,7 +251,7 @@ impl Importer<'_> {
             self.report.lacks(what, "it is the same for all ways through them", name);
         }
         let texture = match &base.base_color_texture {
-            Some(info) => self.texture(&Slot::of(info), Channel::Colour, name)?,
+            Some(info) => self.texture(&TextureUse::of(info), Channel::Colour, name)?,
             None => None,
         };
         Ok(match texture {
@@ -269,11 +263,11 @@ impl Importer<'_> {
     fn relief(&mut self, source: &Source, name: &str) -> Result<Option<Relief>, SceneError> {
         let Some(normal) = &source.normal_texture else { return Ok(None) };
         let strength = if normal.scale.is_finite() { normal.scale } else { 1.0 };
-        let texture = self.texture(&Slot::of_normal(normal), Channel::Data, name)?;
+        let texture = self.texture(&TextureUse::of_normal(normal), Channel::Data, name)?;
         Ok(texture.map(|texture| Relief::Normals { texture, strength, y_along_v: true }))
     }
 
-    /// The share of the surface that its alpha mode leaves; none for all of it.
+    /// Returns the opacity according to the alpha mode; `None` if opaque.
     fn opacity(&mut self, source: &Source, name: &str) -> Result<Option<Share>, SceneError> {
         let base = &source.pbr_metallic_roughness;
         let factor = base.base_color_factor.0[3];
@@ -281,7 +275,7 @@ impl Importer<'_> {
         let opacity = match (&source.alpha_mode, texture) {
             (Checked::Valid(AlphaMode::Mask), _) => {
                 let cutoff = source.alpha_cutoff.as_ref().map_or(0.5, |cutoff| cutoff.0);
-                // A texel stays where its alpha times the factor reaches the cutoff.
+                // A texel is opaque if its alpha times the factor reaches the cutoff.
                 match texture {
                     Some(info) if factor >= cutoff => {
                         self.share(1.0, Some(info), Channel::AlphaFrom(cutoff / factor), name)?
@@ -295,7 +289,7 @@ impl Importer<'_> {
         Ok(Some(opacity).filter(|opacity| *opacity != Share::Constant(1.0)))
     }
 
-    /// Names all that a material asks for and does not get.
+    /// Reports all unsupported features of a material.
     fn report_unread(&mut self, source: &Source, extensions: &Extensions, name: &str) {
         for key in extensions.others.keys() {
             match key.as_str() {
@@ -324,7 +318,7 @@ impl Importer<'_> {
     }
 }
 
-/// Index of refraction of the dielectric, dimmed as `KHR_materials_specular` asks.
+/// Returns the index of refraction of the dielectric, with its reflectance scaled by `KHR_materials_specular`.
 fn relative_index(extensions: &Extensions) -> f32 {
     let ior = extensions.ior.as_ref().map_or(1.5, |ior| ior.ior.0);
     let normal_reflectance = ((ior - 1.0) / (ior + 1.0)).powi(2);
@@ -336,12 +330,12 @@ fn relative_index(extensions: &Extensions) -> f32 {
     (1.0 + root) / (1.0 - root)
 }
 
-/// A number of an extension that is read from its JSON.
+/// Returns a number of an extension that is read from its JSON.
 fn number(extension: &Value, key: &str) -> Option<f32> {
     extension.get(key).and_then(Value::as_f64).map(|v| v as f32)
 }
 
-/// A use of a texture, likewise.
+/// Returns a texture reference of an extension that is read from its JSON.
 fn slot(extension: &Value, key: &str) -> Option<Info> {
     serde_json::from_value(extension.get(key)?.clone()).ok()
 }

@@ -1,20 +1,22 @@
-//! Primitives to triangle meshes.
+//! Conversion of primitives to triangle meshes.
 
-use super::document::Document;
-use super::report::Report;
+use super::document::GltfFile;
+use super::report::Findings;
 use crate::error::SceneError;
 use crate::mesh::RawMesh;
 use glam::{DVec3, Vec2, Vec3};
 use gltf_json::mesh::{Mode, Primitive, Semantic};
 use gltf_json::validation::Checked;
 
-/// Reads a primitive with the texture coordinates of set `uv_set`; none if it has no triangles. `what` names it.
+/// Reads a primitive with the texture coordinates of set `uv_set`; `what` names it in messages.
+///
+/// Returns `None` for points and lines.
 pub(super) fn read(
-    document: &Document,
+    document: &GltfFile,
     primitive: &Primitive,
     uv_set: u32,
     what: &str,
-    report: &mut Report,
+    report: &mut Findings,
 ) -> Result<Option<RawMesh>, SceneError> {
     let attribute = |semantic| primitive.attributes.get(&Checked::Valid(semantic)).copied();
     let mode = match &primitive.mode {

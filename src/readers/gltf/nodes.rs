@@ -1,8 +1,8 @@
 //! The tree of nodes of a scene, and their transforms.
 
-use super::document::Document;
+use super::document::GltfFile;
 use crate::error::SceneError;
-use crate::plan::Selection;
+use crate::selection::PartSelection;
 use glam::{DMat4, DQuat, DVec3};
 use gltf_json::{Index, Node};
 
@@ -10,7 +10,7 @@ use gltf_json::{Index, Node};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Local {
     Matrix(DMat4),
-    /// Scale, then rotation, then translation.
+    /// Transform in three steps: scale, rotation, translation.
     Steps {
         scale: DVec3,
         rotation: DQuat,
@@ -41,7 +41,7 @@ impl Local {
     }
 }
 
-/// A rotation of length 1, none for one without direction.
+/// Returns a unit quaternion; the identity for a quaternion without direction.
 pub(super) fn quaternion(xyzw: [f32; 4]) -> DQuat {
     let q = DQuat::from_array(xyzw.map(f64::from));
     if q.is_finite() && q.length_squared() > 0.0 { q.normalize() } else { DQuat::IDENTITY }
@@ -50,18 +50,18 @@ pub(super) fn quaternion(xyzw: [f32; 4]) -> DQuat {
 /// A node in the tree.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Placed {
-    /// Its number in the file.
+    /// Index in the file.
     pub node: usize,
-    /// Position of its parent in the tree.
+    /// Index of the parent in the tree.
     pub parent: Option<usize>,
-    /// From its own coordinates to the file's.
+    /// Transform from local coordinates to the file's.
     pub to_file: DMat4,
-    /// True if it belongs to the part of the file that is asked for.
+    /// True if the selection contains the node.
     pub selected: bool,
 }
 
-/// Nodes of the file's default scene, parents before their children.
-pub(super) fn tree(document: &Document, selection: &Selection) -> Result<Vec<Placed>, SceneError> {
+/// Returns the nodes of the file's default scene, parents before their children.
+pub(super) fn tree(document: &GltfFile, selection: &PartSelection) -> Result<Vec<Placed>, SceneError> {
     let nodes = &document.root.nodes;
     let mut seen = vec![false; nodes.len()];
     let mut tree: Vec<Placed> = Vec::new();
@@ -90,8 +90,8 @@ pub(super) fn tree(document: &Document, selection: &Selection) -> Result<Vec<Pla
     Ok(tree)
 }
 
-/// Roots of the file's scene; of all nodes, if it has no scene.
-fn roots(document: &Document) -> Result<Vec<Index<Node>>, SceneError> {
+/// Returns the roots of the file's scene, or of all nodes if the file has no scene.
+fn roots(document: &GltfFile) -> Result<Vec<Index<Node>>, SceneError> {
     let root = &document.root;
     let scene = match root.scene {
         Some(index) => Some(document.get(index, "scene")?),

@@ -1,11 +1,11 @@
-//! Parts of a model that are not consumed, each named once with the objects that ask for it.
+//! Report of unsupported features, each listed once with the objects that ask for it.
 
-use crate::error::{Log, Place, SceneError};
+use crate::error::{Location, Log, SceneError};
 
-/// Number of objects that are named.
-const NAMED: usize = 3;
+/// Maximum number of objects that a message names.
+const MAX_NAMED: usize = 3;
 
-/// A finding in the making.
+/// An unsupported feature.
 struct Finding {
     what: String,
     fallback: &'static str,
@@ -13,19 +13,19 @@ struct Finding {
     names: Vec<String>,
 }
 
-/// Collects findings.
+/// Findings about a model.
 #[derive(Default)]
-pub(super) struct Report {
+pub(super) struct Findings {
     findings: Vec<Finding>,
 }
 
-impl Report {
-    /// Adds that the object `name` asks for `what`, which changes the picture.
+impl Findings {
+    /// Adds a feature of the object `name` whose lack changes the image.
     pub fn lacks(&mut self, what: &str, fallback: &'static str, name: &str) {
         self.add(what, fallback, true, name);
     }
 
-    /// Adds a finding that leaves the picture as expected.
+    /// Adds a feature whose lack does not change the expected image.
     pub fn note(&mut self, what: &str, fallback: &'static str, name: &str) {
         self.add(what, fallback, false, name);
     }
@@ -42,11 +42,11 @@ impl Report {
     }
 
     /// Writes all findings to the log.
-    pub fn write(self, place: &Place, log: &mut Log) -> Result<(), SceneError> {
+    pub fn write(self, place: &Location, log: &mut Log) -> Result<(), SceneError> {
         for Finding { what, fallback, changes_picture, names } in self.findings {
-            let mut listed = names.iter().take(NAMED).cloned().collect::<Vec<_>>().join(", ");
-            if names.len() > NAMED {
-                listed = format!("{listed} and {} more", names.len() - NAMED);
+            let mut listed = names.iter().take(MAX_NAMED).cloned().collect::<Vec<_>>().join(", ");
+            if names.len() > MAX_NAMED {
+                listed = format!("{listed} and {} more", names.len() - MAX_NAMED);
             }
             let what = if listed.is_empty() { what } else { format!("{what}: {listed}") };
             match changes_picture {

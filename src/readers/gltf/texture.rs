@@ -1,10 +1,10 @@
-//! Textures: pictures, samplers and transforms of texture coordinates.
+//! Textures: images, samplers and transforms of texture coordinates.
 
-use super::Importer;
 use super::document::Resolved;
+use super::importer::Importer;
+use crate::decode::Channel;
 use crate::error::SceneError;
-use crate::picture::Channel;
-use crate::plan::{Image, PictureSource, TexturePlan};
+use crate::plan::{ImageSource, TexturePlan, TextureSource};
 use glam::{Mat3, Vec2, Vec3};
 use gltf_json::extensions::texture::TextureTransform;
 use gltf_json::material::NormalTexture;
@@ -13,33 +13,34 @@ use gltf_json::validation::Checked;
 use gltf_json::{Index, image};
 use scene::{Filter, TextureId, Wrap};
 
-/// A material's use of a texture.
+/// Reference of a material to a texture.
 #[derive(Clone, Debug)]
-pub(super) struct Slot {
+pub(super) struct TextureUse {
     texture: Index<Texture>,
-    /// Set of texture coordinates.
+    /// Index of the set of texture coordinates.
     pub set: u32,
     transform: Option<TextureTransform>,
 }
 
-impl Slot {
-    pub fn of(info: &Info) -> Slot {
+impl TextureUse {
+    pub fn of(info: &Info) -> TextureUse {
         let transform = info.extensions.as_ref().and_then(|e| e.texture_transform.clone());
-        Slot::new(info.index, info.tex_coord, transform)
+        TextureUse::new(info.index, info.tex_coord, transform)
     }
 
-    pub fn of_normal(info: &NormalTexture) -> Slot {
+    pub fn of_normal(info: &NormalTexture) -> TextureUse {
         let raw = info.extensions.as_ref().and_then(|e| e.others.get("KHR_texture_transform"));
         let transform = raw.and_then(|raw| serde_json::from_value(raw.clone()).ok());
-        Slot::new(info.index, info.tex_coord, transform)
+        TextureUse::new(info.index, info.tex_coord, transform)
     }
 
-    fn new(texture: Index<Texture>, set: u32, transform: Option<TextureTransform>) -> Slot {
+    fn new(texture: Index<Texture>, set: u32, transform: Option<TextureTransform>) -> TextureUse {
         let set = transform.as_ref().and_then(|transform| transform.tex_coord).unwrap_or(set);
-        Slot { texture, set, transform }
+        TextureUse { texture, set, transform }
     }
 
-    /// Transform of texture coordinates that count v upwards, as all do here but glTF's own.
+    /// Returns the transform of texture coordinates in the convention of the renderer, v upwards. glTF counts v
+    /// downwards.
     fn to_uv(&self) -> Mat3 {
         let Some(transform) = &self.transform else { return Mat3::IDENTITY };
         let (sin, cos) = transform.rotation.0.sin_cos();
@@ -51,10 +52,10 @@ impl Slot {
 }
 
 impl Importer<'_> {
-    /// The texture of a slot of the material `name`; none if its picture is of a kind that cannot be read.
+    /// Returns the texture of the material `name`; `None` if its image format is not supported.
     pub(super) fn texture(
         &mut self,
-        slot: &Slot,
+        slot: &TextureUse,
         channel: Channel,
         name: &str,
     ) -> Result<Option<TextureId>, SceneError> {
@@ -64,7 +65,7 @@ impl Importer<'_> {
             self.report.lacks(what, "they are left out", name);
             return Ok(None);
         }
-        let picture = self.document.get(texture.source, "image")?;
+        let image = self.document.get(texture.source, "image")?;
         let default = Sampler::default();
         let sampler = match texture.sampler {
             Some(index) => self.document.get(index, "sampler")?,
@@ -82,9 +83,9 @@ impl Importer<'_> {
             Some(Checked::Valid(MagFilter::Nearest)) => Filter::Nearest,
             _ => Filter::Bilinear,
         };
-        let image_name = picture.name.clone().unwrap_or_else(|| format!("image {}", texture.source.value()));
-        let source = self.picture(picture, texture.source)?;
-        let image = Image::Part { name: image_name, source, channel };
+        let image_name = image.name.clone().unwrap_or_else(|| format!("image {}", texture.source.value()));
+        let source = self.image(image, texture.source)?;
+        let image = TextureSource::Part { name: image_name, source, channel };
         let to_uv = slot.to_uv();
         if !to_uv.is_finite() {
             return Err(self.document.wrong(format!("a texture transform of {name} is not finite")));
@@ -93,25 +94,21 @@ impl Importer<'_> {
         Ok(Some(self.contents.add_texture(TexturePlan { place, image, filter, wrap, to_uv })))
     }
 
-    fn picture(
-        &mut self,
-        picture: &image::Image,
-        index: Index<image::Image>,
-    ) -> Result<PictureSource, SceneError> {
-        if let Some(source) = self.pictures.get(&index.value()) {
+    fn image(&mut self, image: &image::Image, index: Index<image::Image>) -> Result<ImageSource, SceneError> {
+        if let Some(source) = self.images.get(&index.value()) {
             return Ok(source.clone());
         }
-        let source = match (&picture.uri, picture.buffer_view) {
+        let source = match (&image.uri, image.buffer_view) {
             (Some(uri), _) => match self.document.resolve(uri)? {
-                Resolved::Bytes(bytes) => PictureSource::Bytes(bytes.into()),
-                Resolved::File(path) => PictureSource::File(path),
+                Resolved::Bytes(bytes) => ImageSource::Bytes(bytes.into()),
+                Resolved::File(path) => ImageSource::File(path),
             },
-            (None, Some(view)) => PictureSource::Bytes(self.document.view(view)?.into()),
+            (None, Some(view)) => ImageSource::Bytes(self.document.view(view)?.into()),
             (None, None) => {
                 return Err(self.document.wrong(format!("image {} has no picture", index.value())));
             }
         };
-        self.pictures.insert(index.value(), source.clone());
+        self.images.insert(index.value(), source.clone());
         Ok(source)
     }
 }

@@ -1,9 +1,10 @@
-//! Geometry from files and analytic shapes: each reader yields a [`RawMesh`] in the object's own coordinates,
-//! and [`place`] transforms it to world coordinates as Mitsuba does.
+//! Geometry from files and analytic shapes.
 //!
-//! Front sides: Mitsuba decides by the shading normal (emission, one-sided materials), this renderer by the
-//! winding. So where the vertex normals oppose the winding (mirrored transforms, careless exporters), the
-//! winding is reversed.
+//! Each reader returns a [`RawMesh`] in object coordinates. [`place`] transforms it to world coordinates, as Mitsuba
+//! does.
+//!
+//! Front sides: Mitsuba uses the shading normal (for emission and one-sided materials), this renderer the winding. So
+//! the winding is reversed if the vertex normals oppose it, as with mirrored transforms.
 
 pub mod mtl;
 pub mod obj;
@@ -19,27 +20,27 @@ use crate::draft::DraftMesh;
 use base::math::unit;
 use glam::{DMat4, DVec3, Vec2, Vec3};
 
-/// A mesh in its own coordinates, as read from its file.
+/// A mesh in object coordinates, as its file describes it.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct RawMesh {
     pub positions: Vec<DVec3>,
-    /// Normals by vertex, or empty.
+    /// Normal of each vertex, or empty.
     pub normals: Vec<Vec3>,
-    /// Texture coordinates by vertex, or empty; v as in the file.
+    /// Texture coordinates of each vertex, or empty; v as in the file.
     pub uvs: Vec<Vec2>,
     pub triangles: Vec<[u32; 3]>,
     /// Material groups: name and first triangle, ascending.
     pub groups: Vec<(String, usize)>,
 }
 
-/// Choice of a mesh's shading normals.
+/// Shading normals of a mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Normals {
     /// Geometric normals of the faces.
     Flat,
-    /// Normals of the file, else those of the faces.
+    /// Normals of the file; geometric normals if the file has none.
     AsGiven,
-    /// Normals of the file, else smooth ones are computed.
+    /// Normals of the file; smooth normals are computed if the file has none.
     Smooth,
 }
 
@@ -48,16 +49,15 @@ pub enum Normals {
 pub(crate) struct Placement {
     pub to_world: DMat4,
     pub normals: Normals,
-    /// True if the front is the other side.
+    /// True if front and back are swapped.
     pub flip_normals: bool,
-    /// True if texture coordinates count v from the top: v becomes 1 - v.
+    /// True if v counts from the top. v then becomes 1 - v.
     pub v_down: bool,
-    /// True if every triangle gets its barycentric coordinates as uv where the file has none (Mitsuba's
-    /// convention).
+    /// True if triangles without texture coordinates use barycentric coordinates, as in Mitsuba.
     pub needs_uv: bool,
 }
 
-/// Returns the mesh in world coordinates; name, material and emission are left for the caller to fill in.
+/// Returns the mesh in world coordinates. The caller sets name, material and emission.
 pub fn place(raw: RawMesh, how: &Placement) -> DraftMesh {
     let mut mesh = DraftMesh {
         positions: raw.positions.iter().map(|&p| how.to_world.transform_point3(p)).collect(),
@@ -73,7 +73,8 @@ pub fn place(raw: RawMesh, how: &Placement) -> DraftMesh {
             mesh.normals = smooth::vertex_normals(&mesh.positions, &mesh.triangles);
         } else {
             let linear = glam::DMat3::from_mat4(how.to_world);
-            // Cofactors, not the inverse: same direction up to the determinant's sign, and no division by 0.
+            // Cofactors replace the inverse: the direction agrees up to the determinant's sign, and nothing is divided
+            // by 0.
             let sign = if linear.determinant() < 0.0 { -1.0 } else { 1.0 };
             let cofactor = cofactor(&linear) * sign;
             let normals =
@@ -98,7 +99,7 @@ fn cofactor(m: &glam::DMat3) -> glam::DMat3 {
     glam::DMat3::from_cols(m.y_axis.cross(m.z_axis), m.z_axis.cross(m.x_axis), m.x_axis.cross(m.y_axis))
 }
 
-/// Duplicates shared vertices and gives each triangle (0,0), (1,0), (0,1) in Mitsuba's v-down convention.
+/// Duplicates shared vertices, and gives each triangle (0,0), (1,0), (0,1) in Mitsuba's convention of v downwards.
 fn give_barycentric_uvs(mesh: &mut DraftMesh) {
     let corners = || mesh.triangles.iter().flatten().map(|&i| i as usize);
     if corners().any(|i| i >= mesh.positions.len()) || mesh.triangles.len() > (u32::MAX / 3) as usize {
@@ -114,7 +115,7 @@ fn give_barycentric_uvs(mesh: &mut DraftMesh) {
     mesh.triangles = (0..mesh.triangles.len() as u32).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
 }
 
-/// Reverses every triangle whose vertex normals point, in sum, away from its geometric normal.
+/// Reverses triangles whose summed vertex normals point away from the geometric normal.
 fn follow_normals(mesh: &mut DraftMesh) {
     if mesh.normals.is_empty() {
         return;

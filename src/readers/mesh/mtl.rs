@@ -1,10 +1,9 @@
-//! Wavefront MTL: the classic materials an OBJ refers to, as the file states them.
+//! Parser of Wavefront MTL, the classic materials of an OBJ file. The module `native::mtl` converts them.
 //!
-//! Reason not to use `tobj`: a colour of one or two numbers makes its MTL reader panic (4.0.5), and its
-//! errors name no line.
+//! Reason against `tobj` 4.0.5: a colour of one or two numbers makes its MTL reader panic, and its errors name no line.
 
 use super::obj;
-use crate::error::{Place, SceneError};
+use crate::error::{Location, SceneError};
 use base::math::Rgb;
 use glam::DVec3;
 use std::path::Path;
@@ -13,7 +12,7 @@ use std::path::Path;
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct ClassicMaterial {
     pub name: String,
-    pub place: Place,
+    pub place: Location,
     /// Kd.
     pub diffuse: Rgb,
     /// Ks.
@@ -30,9 +29,9 @@ pub(crate) struct ClassicMaterial {
     pub model: u32,
     /// map_Kd, without its options.
     pub diffuse_map: Option<String>,
-    /// map_Ke, likewise.
+    /// map_Ke, without its options.
     pub emissive_map: Option<String>,
-    /// map_d, likewise.
+    /// map_d, without its options.
     pub opacity_map: Option<String>,
     /// Keywords of other maps.
     pub other_maps: Vec<String>,
@@ -42,7 +41,7 @@ pub(crate) struct ClassicMaterial {
 pub fn read(bytes: &[u8], path: &Path) -> Result<Vec<ClassicMaterial>, SceneError> {
     let mut materials: Vec<ClassicMaterial> = Vec::new();
     for (number, line) in obj::lines(bytes).enumerate() {
-        let place = Place::line(path, number as u32 + 1);
+        let place = Location::line(path, number as u32 + 1);
         let line = line.trim_ascii();
         let word_end = line.iter().position(|b| b.is_ascii_whitespace()).unwrap_or(line.len());
         let (word, rest) = line.split_at(word_end);
@@ -92,7 +91,7 @@ fn statement(material: &mut ClassicMaterial, word: &[u8], rest: &[u8], text: Str
     Ok(())
 }
 
-/// The file of a map: options come first, the name last; without options it may hold spaces.
+/// Returns the file name of a map. Options come before the name; without options the name may contain spaces.
 fn file_name(text: String) -> String {
     let last = text.split_whitespace().last().unwrap_or_default().to_owned();
     if text.starts_with('-') { last } else { text }
@@ -107,7 +106,7 @@ fn finite<const N: usize>(rest: &[u8]) -> Result<[f64; N], String> {
     }
 }
 
-/// Parses three numbers, or one for a grey.
+/// Parses three numbers, or one number as a grey.
 fn colour(rest: &[u8]) -> Result<Rgb, String> {
     let three = finite::<3>(rest).map(|c| DVec3::from(c).as_vec3());
     three.or_else(|e| match rest.split(|b| b.is_ascii_whitespace()).filter(|t| !t.is_empty()).count() {

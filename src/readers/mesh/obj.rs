@@ -1,48 +1,46 @@
-//! Wavefront OBJ: positions, texture coordinates, normals, polygons and material groups of the objects and groups that
-//! are asked for.
+//! Reader of Wavefront OBJ: positions, texture coordinates, normals, polygons and material groups of selected objects.
 //!
-//! A vertex is a distinct (position, uv, normal) triple of indices, numbered by first use. Lines, points, curves and
+//! A vertex is a distinct triple of indices (position, uv, normal), numbered by first use. Lines, points, curves and
 //! smoothing groups are ignored.
 //!
-//! Deviations: convex polygons are fans, as in Mitsuba, others are cut by `polygon`.
+//! Deviations: convex polygons are fans, as in Mitsuba. `polygon` triangulates other polygons.
 //!
-//! Reasons not to use `tobj` (4.0.5, tried behind a `BufRead` that passes it one line at a time, counts them,
-//! and leaves out `o`, `g` and `usemtl`, at which it would split the mesh so that vertices are no longer
-//! shared where normals have to be computed): a corner without a normal or texture coordinate among others
-//! that have one gets the file's first; a face with an index out of range is found after the last line, so
-//! its line is not named; a byte that is not UTF-8, as in comments by old exporters, a `vt` of one number, or
-//! colours on some of the vertices end the reading; a face of two corners is no error. A pass before it that
-//! checks all this and finds the faces of each material reads every number and every face, and is as long as
-//! this file.
+//! Reasons against `tobj` 4.0.5:
+//! - A corner without normal or texture coordinate gets the first one of the file if others have one.
+//! - An index out of range is reported without its line.
+//! - Reading ends at bytes that are not UTF-8, at a `vt` of one number, and at colours on some vertices.
+//! - A face of two corners is no error.
+//! - It splits the mesh at `o`, `g` and `usemtl`, so vertices are no longer shared and smooth normals change.
+//!
 
 use super::{RawMesh, polygon};
-use crate::error::{Place, SceneError};
-use crate::plan::Selection;
+use crate::error::{Location, SceneError};
+use crate::selection::PartSelection;
 use glam::{DVec3, Vec2, Vec3};
 use std::collections::{BTreeSet, HashMap};
 use std::path::Path;
 
 const MISSING: u32 = u32::MAX;
-/// Number of vertices of a position beyond which they are found by a hash map.
+/// Number of vertices per position from which a hash map finds them.
 const MAX_CHAIN: usize = 16;
 
 /// Reads the selected part of the OBJ text `bytes`; `path` is for messages.
-pub fn read(bytes: &[u8], path: &Path, selection: &Selection) -> Result<RawMesh, SceneError> {
+pub fn read(bytes: &[u8], path: &Path, selection: &PartSelection) -> Result<RawMesh, SceneError> {
     let mut reader = Reader { selected: selection.only.is_empty(), ..Reader::default() };
-    // Guesses from the usual 30 bytes a line; only the speed depends on them.
+    // Estimates for 30 bytes per line. They affect the speed only.
     reader.positions.reserve(bytes.len() / 100);
     reader.mesh.triangles.reserve(bytes.len() / 60);
     for (number, line) in lines(bytes).enumerate() {
-        let fail = |what: String| SceneError::mesh(Place::line(path, number as u32 + 1), what);
+        let fail = |what: String| SceneError::mesh(Location::line(path, number as u32 + 1), what);
         reader.line(line, selection).map_err(fail)?;
     }
     if reader.mesh.triangles.is_empty() && !selection.only.is_empty() {
-        return Err(Place::file(path).undefined("object or group", &selection.only.join("\", \"")));
+        return Err(Location::file(path).undefined("object or group", &selection.only.join("\", \"")));
     }
     Ok(reader.finish())
 }
 
-/// Lines of a text, without the mark of UTF-8 before them; they end as on Unix, Windows or an old Macintosh.
+/// Returns the lines of a text without its byte-order mark. Lines end as on Unix, Windows or old Macintoshes.
 pub(super) fn lines(bytes: &[u8]) -> impl Iterator<Item = &[u8]> {
     let bytes = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes);
     let end = if bytes.contains(&b'\n') { b'\n' } else { b'\r' };
@@ -66,22 +64,22 @@ struct Reader {
     positions: Vec<DVec3>,
     uvs: Vec<Vec2>,
     normals: Vec<Vec3>,
-    /// First vertex of each position index: a chain through `next`, which is faster than a hash map on real
-    /// files.
+    /// First vertex of each position. `next` chains the others, which is faster than a hash map for typical files.
     first: Vec<u32>,
-    /// Vertices of positions that have more than `MAX_CHAIN`, by position, uv and normal.
+    /// Vertices of positions with more than `MAX_CHAIN` vertices, by position, uv and normal.
     crowded: HashMap<[u32; 3], u32>,
-    vertices: Vec<Vertex>,
+    vertices: Vec<ObjVertex>,
     mesh: RawMesh,
     corners: Vec<u32>,
-    /// Name of the object, and names of the groups, that faces belong to.
+    /// Name of the current object.
     object: String,
+    /// Names of the current groups.
     groups: Vec<String>,
-    /// True if such faces are asked for.
+    /// True if the selection contains the current object or groups.
     selected: bool,
 }
 
-struct Vertex {
+struct ObjVertex {
     position: u32,
     uv: u32,
     normal: u32,
@@ -89,7 +87,7 @@ struct Vertex {
 }
 
 impl Reader {
-    fn line(&mut self, line: &[u8], selection: &Selection) -> Result<(), String> {
+    fn line(&mut self, line: &[u8], selection: &PartSelection) -> Result<(), String> {
         let line = line.trim_ascii();
         let word_end = line.iter().position(|b| b.is_ascii_whitespace()).unwrap_or(line.len());
         let (word, rest) = line.split_at(word_end);
@@ -121,7 +119,7 @@ impl Reader {
         Ok(())
     }
 
-    fn select(&mut self, selection: &Selection) {
+    fn select(&mut self, selection: &PartSelection) {
         let is_in = |names: &[String]| names.iter().any(|n| *n == self.object || self.groups.contains(n));
         self.selected = (selection.only.is_empty() || is_in(&selection.only)) && !is_in(&selection.except);
     }
@@ -165,12 +163,12 @@ impl Reader {
             if length == MAX_CHAIN {
                 let known = *self.crowded.entry([position, uv, normal]).or_insert(new);
                 if known == new {
-                    self.vertices.push(Vertex { position, uv, normal, next: MISSING });
+                    self.vertices.push(ObjVertex { position, uv, normal, next: MISSING });
                 }
                 return known;
             }
         }
-        self.vertices.push(Vertex { position, uv, normal, next: self.first[position as usize] });
+        self.vertices.push(ObjVertex { position, uv, normal, next: self.first[position as usize] });
         self.first[position as usize] = new;
         new
     }
@@ -182,15 +180,15 @@ impl Reader {
             mesh.uvs = vertices.iter().map(|v| uvs.get(v.uv as usize).copied().unwrap_or_default()).collect();
         }
         if !normals.is_empty() {
-            // A corner without a normal gets zero, which the sanitiser turns into the geometric one.
-            let normal = |v: &Vertex| normals.get(v.normal as usize).copied().unwrap_or_default();
+            // A corner without a normal gets zero, which is later replaced by the geometric normal.
+            let normal = |v: &ObjVertex| normals.get(v.normal as usize).copied().unwrap_or_default();
             mesh.normals = vertices.iter().map(normal).collect();
         }
         mesh
     }
 }
 
-/// Splits the mesh at its material groups: name (empty before the first `usemtl`) and mesh, by first use.
+/// Splits the mesh at its material groups, by first use. The name before the first `usemtl` is empty.
 pub(crate) fn split_by_material(raw: RawMesh) -> Vec<(String, RawMesh)> {
     let mut names: Vec<String> = Vec::new();
     let mut of_name: HashMap<String, usize> = HashMap::new();
@@ -216,8 +214,8 @@ pub(crate) fn split_by_material(raw: RawMesh) -> Vec<(String, RawMesh)> {
         .collect()
 }
 
-/// Returns the mesh of `triangles` over only the vertices of `raw` they use. Indices are in range: the reader
-/// made them.
+/// Returns the mesh of `triangles` with the vertices of `raw` that they use. The reader guarantees that indices are in
+/// range.
 fn with_used_vertices(raw: &RawMesh, mut triangles: Vec<[u32; 3]>) -> RawMesh {
     let mut renumbered = vec![MISSING; raw.positions.len()];
     let mut part = RawMesh::default();
@@ -235,7 +233,7 @@ fn with_used_vertices(raw: &RawMesh, mut triangles: Vec<[u32; 3]>) -> RawMesh {
     part
 }
 
-/// Parses the first `N` numbers of a line; any further ones (w, vertex colours) are ignored.
+/// Parses the first `N` numbers of a line. Further ones (w, vertex colours) are ignored.
 pub(super) fn numbers<const N: usize>(rest: &[u8]) -> Result<[f64; N], String> {
     let mut values = [0.0; N];
     let mut tokens = rest.split(|b| b.is_ascii_whitespace()).filter(|t| !t.is_empty());
@@ -248,7 +246,7 @@ pub(super) fn numbers<const N: usize>(rest: &[u8]) -> Result<[f64; N], String> {
     Ok(values)
 }
 
-/// Parses a one-based index, or one counted back from the latest if negative; `MISSING` where it is left out.
+/// Parses a one-based index, or one that counts back from the latest if negative; `MISSING` for an empty one.
 fn index(token: Option<&[u8]>, count: usize, what: &str) -> Result<u32, String> {
     let Some(token) = token.filter(|t| !t.is_empty()) else { return Ok(MISSING) };
     let text = String::from_utf8_lossy(token);
@@ -266,7 +264,7 @@ mod tests {
     use super::*;
 
     fn read_text(text: &str) -> Result<RawMesh, String> {
-        read(text.as_bytes(), Path::new("t.obj"), &Selection::default()).map_err(|e| e.to_string())
+        read(text.as_bytes(), Path::new("t.obj"), &PartSelection::default()).map_err(|e| e.to_string())
     }
 
     #[test]
@@ -285,7 +283,7 @@ mod tests {
             o table\nf 4 1 2\n";
         let names = |names: &[&str]| names.iter().map(|name| name.to_string()).collect();
         let count = |only: &[&str], except: &[&str]| {
-            let selection = Selection { only: names(only), except: names(except) };
+            let selection = PartSelection { only: names(only), except: names(except) };
             read(text.as_bytes(), Path::new("t.obj"), &selection).map(|mesh| mesh.triangles.len())
         };
         assert_eq!(count(&[], &[]).unwrap(), 4);

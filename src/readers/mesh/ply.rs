@@ -1,27 +1,30 @@
-//! PLY meshes, ASCII and binary of either byte order: vertices with optional normals and texture coordinates, faces of
-//! any size, cut by `polygon`. Other elements and properties are ignored.
+//! Reader of PLY meshes, ASCII and binary of either byte order.
 //!
-//! Reasons not to use `ply-rs-bw` (4.0.1, tried): a byte that is not UTF-8, as in comments by old exporters, ends the
-//! reading; so does a blank line, or an element over several lines, among ASCII values; every face is a list of its own
-//! in memory; and its messages take three lines.
+//! Vertices have optional normals and texture coordinates. Faces have any number of corners; `polygon` triangulates
+//! them. Other elements and properties are ignored.
+//!
+//! Reasons against `ply-rs-bw` 4.0.1:
+//! - Reading ends at bytes that are not UTF-8, at blank lines, and at ASCII elements over several lines.
+//! - Each face is a list of its own in memory.
+//! - Messages have three lines.
 
 use super::{RawMesh, polygon};
-use crate::error::{Place, SceneError};
+use crate::error::{Location, SceneError};
 use glam::{DVec3, Vec2, Vec3};
 use std::path::Path;
 
 /// Reads the PLY file `bytes`; `path` is for messages.
 pub fn read(bytes: &[u8], path: &Path) -> Result<RawMesh, SceneError> {
     let (header, body) =
-        header(bytes).map_err(|(line, what)| SceneError::mesh(Place::line(path, line), what))?;
-    let mut values: Box<dyn Values> = match header.format {
+        header(bytes).map_err(|(line, what)| SceneError::mesh(Location::line(path, line), what))?;
+    let mut values: Box<dyn PlyValues> = match header.format {
         Format::Ascii => Box::new(Ascii { rest: body, line: header.lines }),
         Format::LittleEndian => Box::new(Binary { rest: body, big_endian: false }),
         Format::BigEndian => Box::new(Binary { rest: body, big_endian: true }),
     };
     contents(&header, values.as_mut()).map_err(|what| match values.line() {
-        Some(line) => SceneError::mesh(Place::line(path, line), what),
-        None => SceneError::mesh(Place::file(path), what),
+        Some(line) => SceneError::mesh(Location::line(path, line), what),
+        None => SceneError::mesh(Location::file(path), what),
     })
 }
 
@@ -32,7 +35,7 @@ enum Format {
     BigEndian,
 }
 
-/// Reads a binary number of some type.
+/// Reader of a binary number of some type.
 type Scalar = fn(&mut Binary) -> Result<f64, String>;
 
 #[derive(Debug)]
@@ -47,11 +50,11 @@ struct Header {
 struct Element {
     name: String,
     count: u64,
-    properties: Vec<Property>,
+    properties: Vec<PlyProperty>,
 }
 
 #[derive(Debug)]
-struct Property {
+struct PlyProperty {
     name: String,
     /// Type of the count, for lists.
     list: Option<Scalar>,
@@ -103,7 +106,7 @@ fn header(bytes: &[u8]) -> Result<(Header, &[u8]), (u32, String)> {
                     Some(count) => count,
                     None => None,
                 };
-                element.properties.push(Property { name: name.into(), list, scalar });
+                element.properties.push(PlyProperty { name: name.into(), list, scalar });
             }
             ["end_header"] => break,
             _ => return fail("unknown line in the header"),
@@ -115,7 +118,7 @@ fn header(bytes: &[u8]) -> Result<(Header, &[u8]), (u32, String)> {
     }
 }
 
-/// The reader of a type by its name.
+/// Returns the reader of a type by its name.
 fn scalar(name: &str) -> Option<Scalar> {
     Some(match name {
         "char" | "int8" => |binary| Ok(f64::from(i8::from_le_bytes(binary.take()?))),
@@ -130,14 +133,14 @@ fn scalar(name: &str) -> Option<Scalar> {
     })
 }
 
-/// The values after the header, one after the other.
-trait Values {
+/// Sequence of the values after the header.
+trait PlyValues {
     fn next(&mut self, scalar: Scalar) -> Result<f64, String>;
     fn line(&self) -> Option<u32> {
         None
     }
 
-    /// Bytes that are left.
+    /// Returns the number of bytes not read yet.
     fn left(&self) -> usize;
 }
 
@@ -146,7 +149,7 @@ struct Ascii<'a> {
     line: u32,
 }
 
-impl Values for Ascii<'_> {
+impl PlyValues for Ascii<'_> {
     fn next(&mut self, _: Scalar) -> Result<f64, String> {
         let start = self.rest.iter().position(|b| !b.is_ascii_whitespace()).unwrap_or(self.rest.len());
         self.line += self.rest[..start].iter().filter(|&&b| b == b'\n').count() as u32;
@@ -186,7 +189,7 @@ impl Binary<'_> {
     }
 }
 
-impl Values for Binary<'_> {
+impl PlyValues for Binary<'_> {
     fn next(&mut self, scalar: Scalar) -> Result<f64, String> {
         scalar(self)
     }
@@ -196,13 +199,13 @@ impl Values for Binary<'_> {
     }
 }
 
-/// Elements for which memory is taken at once: as many as the header claims, if the bytes that are left can hold them.
-fn expected(element: &Element, values: &dyn Values) -> usize {
+/// Returns the number of elements to allocate: the header's count, limited by what the remaining bytes can hold.
+fn expected(element: &Element, values: &dyn PlyValues) -> usize {
     let most = values.left() / element.properties.len().max(1);
     usize::try_from(element.count).map_or(most, |count| count.min(most))
 }
 
-fn contents(header: &Header, values: &mut dyn Values) -> Result<RawMesh, String> {
+fn contents(header: &Header, values: &mut dyn PlyValues) -> Result<RawMesh, String> {
     let mut mesh = RawMesh::default();
     for element in &header.elements {
         match element.name.as_str() {
@@ -226,10 +229,10 @@ fn contents(header: &Header, values: &mut dyn Values) -> Result<RawMesh, String>
     Ok(mesh)
 }
 
-/// Reads one property of one element, passing on each of its values.
+/// Reads one property of one element, and passes on each of its values.
 fn property_values(
-    property: &Property,
-    values: &mut dyn Values,
+    property: &PlyProperty,
+    values: &mut dyn PlyValues,
     mut each: impl FnMut(f64),
 ) -> Result<(), String> {
     let count = match property.list {
@@ -248,7 +251,7 @@ fn property_values(
     Ok(())
 }
 
-fn vertices(element: &Element, values: &mut dyn Values, mesh: &mut RawMesh) -> Result<(), String> {
+fn vertices(element: &Element, values: &mut dyn PlyValues, mesh: &mut RawMesh) -> Result<(), String> {
     let find = |names: &[&str]| element.properties.iter().position(|p| names.contains(&p.name.as_str()));
     let triple = |names: [&str; 3]| names.map(|n| find(&[n])).into_iter().collect::<Option<Vec<_>>>();
     let position = triple(["x", "y", "z"]).ok_or("the vertices have no x, y, z")?;
@@ -271,9 +274,9 @@ fn vertices(element: &Element, values: &mut dyn Values, mesh: &mut RawMesh) -> R
     Ok(())
 }
 
-fn faces(element: &Element, values: &mut dyn Values, mesh: &mut RawMesh) -> Result<(), String> {
+fn faces(element: &Element, values: &mut dyn PlyValues, mesh: &mut RawMesh) -> Result<(), String> {
     let is_corners =
-        |p: &Property| p.list.is_some() && ["vertex_index", "vertex_indices"].contains(&p.name.as_str());
+        |p: &PlyProperty| p.list.is_some() && ["vertex_index", "vertex_indices"].contains(&p.name.as_str());
     if !element.properties.iter().any(is_corners) {
         return Err("the faces have no list of vertex indices".into());
     }
@@ -292,7 +295,7 @@ fn faces(element: &Element, values: &mut dyn Values, mesh: &mut RawMesh) -> Resu
             if corners.len() < 3 {
                 return Err(format!("a face needs three corners, this one has {}", corners.len()));
             }
-            // Corners out of range, which are told once all is read, lie anywhere.
+            // Corners out of range are reported after reading; their position here does not matter.
             let positions = &mesh.positions;
             let position = |&corner: &u32| positions.get(corner as usize).copied().unwrap_or_default();
             polygon::cut(&corners, position, &mut mesh.triangles);

@@ -1,13 +1,13 @@
-//! Triangles of a polygon: a fan where it is convex, else by clipping ears (crate `earcut`).
+//! Triangulation of polygons: fans for convex ones, else ear clipping (crate `earcut`).
 
 use base::math::unit;
 use earcut::Earcut;
 use glam::{DMat3, DVec2, DVec3};
 
-/// Corners beyond which a polygon is taken for convex.
+/// Number of corners beyond which a polygon counts as convex.
 const MAX_CLIPPED: usize = 10_000;
 
-/// Adds the triangles of the polygon of `corners`, at least three, at the positions that `position` tells.
+/// Adds the triangles of a polygon of at least three corners; `position` returns the position of a corner.
 pub(super) fn cut(corners: &[u32], position: impl Fn(&u32) -> DVec3, triangles: &mut Vec<[u32; 3]>) {
     if corners.len() > 3 && corners.len() <= MAX_CLIPPED {
         let points: Vec<DVec3> = corners.iter().map(position).collect();
@@ -16,7 +16,7 @@ pub(super) fn cut(corners: &[u32], position: impl Fn(&u32) -> DVec3, triangles: 
             Earcut::new().earcut(flat.iter().map(|p| p.to_array()), &[], &mut ears);
             if ears.len() >= 3 {
                 let corner = |ear: u32| corners[ear as usize];
-                // The clipper may turn triangles over.
+                // The clipper may reverse triangles.
                 triangles.extend(ears.chunks_exact(3).map(|e| {
                     match turn([0, 1, 2].map(|k| flat[e[k] as usize])) {
                         turn if turn < 0.0 => [corner(e[0]), corner(e[2]), corner(e[1])],
@@ -30,7 +30,7 @@ pub(super) fn cut(corners: &[u32], position: impl Fn(&u32) -> DVec3, triangles: 
     triangles.extend(corners[1..].windows(2).map(|w| [corners[0], w[0], w[1]]));
 }
 
-/// The polygon in the plane across its mean normal, counter-clockwise; none without area.
+/// Returns the polygon in the plane across its mean normal, counter-clockwise; `None` without area.
 fn flattened(points: &[DVec3]) -> Option<Vec<DVec2>> {
     let next = points.iter().cycle().skip(1);
     let double_area: DVec3 = points.iter().zip(next).map(|(a, b)| (a - points[0]).cross(b - points[0])).sum();
@@ -46,7 +46,7 @@ fn is_convex(flat: &[DVec2]) -> bool {
     (0..n).all(|i| turn([flat[i], flat[(i + 1) % n], flat[(i + 2) % n]]) >= 0.0)
 }
 
-/// Twice the area of a triangle, positive counter-clockwise.
+/// Returns twice the area of a triangle, positive if counter-clockwise.
 fn turn([a, b, c]: [DVec2; 3]) -> f64 {
     (b - a).perp_dot(c - a)
 }

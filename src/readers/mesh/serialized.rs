@@ -1,7 +1,7 @@
-//! Mitsuba's `.serialized` meshes, file versions 3 and 4: deflated blocks and a table of their offsets.
+//! Reader of Mitsuba's `.serialized` meshes, file versions 3 and 4: deflated blocks and a table of their offsets.
 
 use super::RawMesh;
-use crate::error::{Place, SceneError};
+use crate::error::{Location, SceneError};
 use flate2::read::ZlibDecoder;
 use glam::{DVec3, Vec2};
 use std::io::Read;
@@ -17,7 +17,7 @@ const MAX_NAME: usize = 1 << 16;
 
 /// Reads mesh number `index` of the file `bytes`; `path` is for messages.
 pub fn read(bytes: &[u8], index: usize, path: &Path) -> Result<RawMesh, SceneError> {
-    let fail = |what: String| SceneError::mesh(Place::file(path), format!("mesh {index}: {what}"));
+    let fail = |what: String| SceneError::mesh(Location::file(path), format!("mesh {index}: {what}"));
     read_block(bytes, index).map_err(fail)
 }
 
@@ -84,8 +84,9 @@ fn array<const N: usize>(bytes: &[u8], at: usize) -> Option<[u8; N]> {
     bytes.get(at..at.checked_add(N)?)?.try_into().ok()
 }
 
-/// A deflated block. A count alone never causes an allocation: deflate cannot expand by more than about 1032,
-/// so that a count beyond that is wrong.
+/// A deflated block.
+///
+/// Deflate expands by at most 1032. A count beyond that is rejected before anything is allocated.
 struct Stream<'a> {
     inner: ZlibDecoder<&'a [u8]>,
     limit: usize,

@@ -1,17 +1,17 @@
 //! Analytic shapes, with Mitsuba's extents and texture coordinates (v counts downwards).
 //!
-//! Deviations: spheres, disks and cylinders are tessellated. Their vertices are moved outwards by the
-//! distance that makes the area, hence the power of an emitter, the true shape's; normals are exact.
+//! Deviations: spheres, disks and cylinders are tessellated. Their vertices are moved outwards until the area, and so
+//! the power of an emitter, is exact. Normals are exact.
 
 use super::RawMesh;
 use base::math::unit;
 use glam::{DVec3, Vec2, Vec3};
 use std::f64::consts::{PI, TAU};
 
-/// Number of facets around a sphere, disk or cylinder; the facets' edges stay within 0.03 % of the radius.
+/// Number of facets around a sphere, disk or cylinder. The edges stay within 0.03 % of the radius.
 const AROUND: u32 = 128;
 
-/// The square [-1, 1]² in the plane z = 0, facing +z.
+/// Returns the square [-1, 1]² in the plane z = 0, facing +z.
 pub fn rectangle() -> RawMesh {
     RawMesh {
         positions: [[-1., -1.], [1., -1.], [-1., 1.], [1., 1.]].map(|[x, y]| DVec3::new(x, y, 0.)).to_vec(),
@@ -22,10 +22,10 @@ pub fn rectangle() -> RawMesh {
     }
 }
 
-/// The cube [-1, 1]³ facing outwards.
+/// Returns the cube [-1, 1]³, facing outwards.
 pub fn cube() -> RawMesh {
     let mut mesh = RawMesh::default();
-    // Normal, and the two edges from the first corner: to the second and to the fourth.
+    // Normal, and the edges from the first corner to the second and to the fourth.
     let faces: [[[f64; 3]; 3]; 6] = [
         [[0., -1., 0.], [0., 0., 1.], [-1., 0., 0.]],
         [[0., 1., 0.], [-1., 0., 0.], [0., 0., 1.]],
@@ -50,7 +50,7 @@ pub fn cube() -> RawMesh {
     mesh
 }
 
-/// The unit disk in the plane z = 0, facing +z; u is the radius, v the azimuth over 2π.
+/// Returns the unit disk in the plane z = 0, facing +z; u is the radius, v the azimuth over 2π.
 pub fn disk() -> RawMesh {
     let step = TAU / f64::from(AROUND);
     let radius = (step / step.sin()).sqrt();
@@ -69,7 +69,7 @@ pub fn disk() -> RawMesh {
     mesh
 }
 
-/// A sphere facing outwards; u is the azimuth over 2π, v the angle from +z over π.
+/// Returns a sphere facing outwards; u is the azimuth over 2π, v the angle from +z over π.
 pub fn sphere(centre: DVec3, radius: f64) -> RawMesh {
     let rows = AROUND / 2;
     let direction = |i: u32, j: u32| {
@@ -82,7 +82,7 @@ pub fn sphere(centre: DVec3, radius: f64) -> RawMesh {
     for j in 0..=rows {
         for i in 0..=AROUND {
             mesh.positions.push(direction(i, j));
-            // A pole's texture coordinate lies in the middle of the triangle that ends there.
+            // The texture coordinate of a pole lies in the middle of the triangle that ends there.
             let shift = if j == 0 || j == rows { 0.5 } else { 0.0 };
             mesh.uvs.push(Vec2::new((i as f32 + shift) / AROUND as f32, j as f32 / rows as f32));
         }
@@ -105,7 +105,7 @@ pub fn sphere(centre: DVec3, radius: f64) -> RawMesh {
     mesh
 }
 
-/// An open cylinder from `p0` to `p1`, facing outwards; u is the azimuth over 2π, v runs along the axis.
+/// Returns an open cylinder from `p0` to `p1`, facing outwards; u is the azimuth over 2π, v runs along the axis.
 pub fn cylinder(p0: DVec3, p1: DVec3, radius: f64) -> RawMesh {
     let axis = p1 - p0;
     let (tangent, bitangent) = unit(axis).unwrap_or(DVec3::Z).any_orthonormal_pair();

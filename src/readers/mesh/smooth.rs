@@ -1,12 +1,12 @@
 //! Vertex normals for meshes whose files have none.
 //!
-//! Paper: Thürmer and Wüthrich, *Computing Vertex Normals from Polygonal Facets*, JGT 1998: face normals
-//! weighted by the angle of the face at the vertex.
+//! Paper: Thürmer and Wüthrich, *Computing Vertex Normals from Polygonal Facets*, JGT 1998. Face normals are weighted
+//! by the angle of the face at the vertex.
 
 use base::math::unit;
 use glam::{DVec3, Vec3};
 
-/// Computes unit normals by vertex; zero where no face of positive area touches the vertex.
+/// Returns a unit normal per vertex; zero if no face of positive area touches the vertex.
 pub(crate) fn vertex_normals(positions: &[DVec3], triangles: &[[u32; 3]]) -> Vec<Vec3> {
     let mut sums = vec![DVec3::ZERO; positions.len()];
     for t in triangles {

@@ -1,14 +1,14 @@
-//! Typed access to an object's properties; a property that is asked for counts as supported.
+//! Typed access to the properties of an object. Any property that is asked for counts as supported.
 
-use super::tree::{Object, Property};
-use super::value::Value;
+use super::tree::{Object, ObjectProperty};
+use super::value::PropertyValue;
 use crate::error::{Log, SceneError};
 use glam::{DMat4, DVec3};
 
 impl Object {
     /// Returns the property and marks it as used.
-    pub fn property(&self, name: &str) -> Option<&Property> {
-        // If a file gives a parameter twice, the last one counts.
+    pub fn property(&self, name: &str) -> Option<&ObjectProperty> {
+        // The last value counts if a file gives a parameter twice.
         let found = self.properties.iter().rev().find(|p| p.name == name);
         found.inspect(|p| p.used.set(true))
     }
@@ -21,7 +21,7 @@ impl Object {
         &self,
         name: &str,
         kind: &str,
-        get: impl Fn(&Value) -> Option<T>,
+        get: impl Fn(&PropertyValue) -> Option<T>,
     ) -> Result<Option<T>, SceneError> {
         let Some(property) = self.property(name) else { return Ok(None) };
         let what = || format!("\"{name}\" of {} \"{}\" has the wrong type", self.tag, self.plugin);
@@ -30,36 +30,36 @@ impl Object {
     }
 
     pub fn boolean(&self, name: &str, default: bool) -> Result<bool, SceneError> {
-        let get = |v: &Value| if let Value::Boolean(b) = v { Some(*b) } else { None };
+        let get = |v: &PropertyValue| if let PropertyValue::Boolean(b) = v { Some(*b) } else { None };
         Ok(self.typed(name, "boolean", get)?.unwrap_or(default))
     }
 
     pub fn float(&self, name: &str) -> Result<Option<f64>, SceneError> {
-        let get = |v: &Value| match v {
-            Value::Float(f) | Value::Spectrum(f) => Some(*f),
-            Value::Integer(i) => Some(*i as f64),
+        let get = |v: &PropertyValue| match v {
+            PropertyValue::Float(f) | PropertyValue::Spectrum(f) => Some(*f),
+            PropertyValue::Integer(i) => Some(*i as f64),
             _ => None,
         };
         self.typed(name, "float", get)
     }
 
     pub fn integer(&self, name: &str) -> Result<Option<i64>, SceneError> {
-        let get = |v: &Value| if let Value::Integer(i) = v { Some(*i) } else { None };
+        let get = |v: &PropertyValue| if let PropertyValue::Integer(i) = v { Some(*i) } else { None };
         self.typed(name, "integer", get)
     }
 
     pub fn string(&self, name: &str) -> Result<Option<String>, SceneError> {
-        let get = |v: &Value| if let Value::String(s) = v { Some(s.clone()) } else { None };
+        let get = |v: &PropertyValue| if let PropertyValue::String(s) = v { Some(s.clone()) } else { None };
         self.typed(name, "string", get)
     }
 
     pub fn vector(&self, name: &str) -> Result<Option<DVec3>, SceneError> {
-        let get = |v: &Value| if let Value::Vector(p) = v { Some(*p) } else { None };
+        let get = |v: &PropertyValue| if let PropertyValue::Vector(p) = v { Some(*p) } else { None };
         self.typed(name, "point", get)
     }
 
     pub fn transform(&self, name: &str) -> Result<Option<DMat4>, SceneError> {
-        let get = |v: &Value| if let Value::Transform(m) = v { Some(*m) } else { None };
+        let get = |v: &PropertyValue| if let PropertyValue::Transform(m) = v { Some(*m) } else { None };
         self.typed(name, "transform", get)
     }
 
@@ -74,12 +74,12 @@ impl Object {
         }
     }
 
-    /// Marks parameters as supported, though nothing here depends on them.
+    /// Marks parameters as supported that have no effect here.
     pub fn ignore(&self, names: &[&str]) {
         names.iter().for_each(|name| _ = self.property(name));
     }
 
-    /// Warns of every property and child that was never asked for.
+    /// Warns of every property and child that no converter has asked for.
     pub fn report_unused(&self, log: &mut Log) -> Result<(), SceneError> {
         let of = || format!("of {} \"{}\" is not modelled", self.tag, self.plugin);
         for property in self.properties.iter().filter(|p| !p.used.replace(true)) {

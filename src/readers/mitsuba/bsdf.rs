@@ -1,24 +1,24 @@
-//! Bsdfs to materials.
+//! Conversion of BSDFs to materials.
 //!
-//! Deviations: anisotropic glass and layered coatings have no counterpart; each is replaced by the
-//! nearest material, with a warning.
+//! Deviations: anisotropic glass and layered coatings have no counterpart. The nearest material replaces each of them,
+//! with a warning.
 
-use super::Converter;
 use super::bsdf_kinds::{diffuse, glass};
+use super::converter::Converter;
 use super::tree::Object;
 use super::value::numbers;
 use crate::error::SceneError;
 use crate::layers;
-use crate::layers::Surface;
+use crate::layers::CoatSurface;
 use base::math::{Rgb, luminance};
 use scene::{Fresnel, Lobe, Material, MaterialId, Reflectance, Relief, Share};
 use std::rc::Rc;
 
-/// Share of the light lost by the weights of a mixture, above which it is absorbed: less is rounding.
+/// Sum of missing weights of a mixture, above which that share is absorbed. Less is rounding.
 const MIN_LOST: f64 = 1e-4;
 
 impl Converter<'_> {
-    /// The material of a shape: its bsdf's, or Mitsuba's default, which is black on emitters.
+    /// Returns the material of a shape: its BSDF's, or Mitsuba's default, which is black for emitters.
     pub(super) fn material_of_shape(
         &mut self,
         bsdf: Option<&Rc<Object>>,
@@ -35,7 +35,7 @@ impl Converter<'_> {
             self.default_materials[slot] = Some(id);
             return Ok(id);
         };
-        // The document keeps every object, so the address is its identity.
+        // The document owns every object, so an address identifies an object.
         let key = Rc::as_ptr(bsdf);
         if let Some((_, id)) = self.material_of.iter().find(|(object, _)| *object == key) {
             return Ok(*id);
@@ -59,7 +59,7 @@ impl Converter<'_> {
         });
         let material = match bsdf.plugin.as_str() {
             "diffuse" => {
-                // 0.6 knows both names.
+                // Mitsuba 0.6 accepts both names.
                 let old = bsdf.has("diffuse_reflectance");
                 let parameter = if old { "diffuse_reflectance" } else { "reflectance" };
                 diffuse(name, self.reflectance(bsdf, parameter, 0.5)?)
@@ -82,7 +82,12 @@ impl Converter<'_> {
             "dielectric" | "thindielectric" | "roughdielectric" => self.dielectric(bsdf, name)?,
             "principled" => self.principled(bsdf, name)?,
             "phong" | "ward" => self.classic_glossy(bsdf, name)?,
-            "null" => glass(name, (1.0, false), [Reflectance::Constant(Rgb::ONE); 2]),
+            "null" => {
+                let white = Reflectance::Constant(Rgb::ONE);
+                let clear =
+                    Lobe::Dielectric { eta: 1.0, thin: false, reflectance: white, transmittance: white };
+                glass(name, clear)
+            }
             "twosided" => self.two_sided(bsdf, depth)?,
             "mask" => self.masked(bsdf, depth)?,
             "bumpmap" | "bump" | "normalmap" => self.relieved(bsdf, depth)?,
@@ -99,7 +104,7 @@ impl Converter<'_> {
         Ok(material)
     }
 
-    /// The nested bsdf seen from both sides.
+    /// Returns the nested BSDF as two-sided.
     fn two_sided(&mut self, bsdf: &Object, depth: u32) -> Result<Material, SceneError> {
         let nested = self.nested(bsdf, depth)?;
         if let [Lobe::Dielectric { .. } | Lobe::RoughDielectric { .. }, ..] = nested.lobes[..] {
@@ -108,7 +113,7 @@ impl Converter<'_> {
         Ok(Material { two_sided: true, ..nested })
     }
 
-    /// The nested bsdf with gaps.
+    /// Returns the nested BSDF with an opacity.
     fn masked(&mut self, bsdf: &Object, depth: u32) -> Result<Material, SceneError> {
         let opacity = self.share(bsdf, "opacity", 0.5)?;
         let nested = self.nested(bsdf, depth)?;
@@ -130,8 +135,7 @@ impl Converter<'_> {
         Ok(Material { opacity: Some(opacity), ..nested })
     }
 
-    /// The nested bsdf under a dielectric coat: a diffuse one is that of plastic, and lobes lose at the coat as much as
-    /// at normal incidence.
+    /// Returns the nested BSDF under a dielectric coat; see [`layers::coated`].
     fn coated(&mut self, bsdf: &Object, depth: u32) -> Result<Material, SceneError> {
         let eta = self.relative_ior(bsdf, "bk7")?;
         let scale = self.reflectance(bsdf, "specular_reflectance", 1.0)?;
@@ -145,7 +149,7 @@ impl Converter<'_> {
         };
         let nested = self.nested(bsdf, depth)?;
         let coats_before = nested.lobes.len();
-        let surface = Surface { eta, lobe: coat, through };
+        let surface = CoatSurface { eta, lobe: coat, through };
         let nested = layers::coated(nested, surface, &bsdf.place, self.log)?;
         if nested.lobes.len() == coats_before {
             return Ok(nested);
@@ -156,7 +160,7 @@ impl Converter<'_> {
         Ok(nested)
     }
 
-    /// Two nested bsdfs, mixed.
+    /// Returns the mixture of two nested BSDFs.
     fn blended(&mut self, bsdf: &Object, depth: u32) -> Result<Material, SceneError> {
         let weight = self.share(bsdf, "weight", 0.5)?;
         let nested = self.tagged(bsdf, "bsdf")?;
@@ -168,7 +172,7 @@ impl Converter<'_> {
         layers::blended(weight, [first, other], &bsdf.place, self.log)
     }
 
-    /// The nested bsdf with a relief.
+    /// Returns the nested BSDF with a relief.
     fn relieved(&mut self, bsdf: &Object, depth: u32) -> Result<Material, SceneError> {
         let nested = self.nested(bsdf, depth)?;
         let normals = bsdf.plugin == "normalmap";
@@ -197,7 +201,7 @@ impl Converter<'_> {
         Ok(Material { relief: relief.or(nested.relief), ..nested })
     }
 
-    /// Nested bsdfs, each with a share of the light; the rest is absorbed.
+    /// Returns nested BSDFs, each with its share of the light. The remaining share is absorbed.
     fn mixed(&mut self, bsdf: &Object, depth: u32) -> Result<Material, SceneError> {
         let text = bsdf.string("weights")?.unwrap_or_default();
         let nested = self.tagged(bsdf, "bsdf")?;
@@ -219,7 +223,7 @@ impl Converter<'_> {
         if lost > MIN_LOST {
             parts.push((lost, diffuse(bsdf.plugin.clone(), Reflectance::BLACK)));
         }
-        // From the last to the first, each with those behind it as one.
+        // Parts are blended from the last to the first: each with the mixture of all later parts.
         let mut whole: Option<(f64, Material)> = None;
         for (weight, part) in parts.into_iter().filter(|(weight, _)| *weight > 0.0).rev() {
             whole = Some(match whole {

@@ -1,6 +1,6 @@
-//! Kinds of BSDF that hold no other.
+//! Conversion of BSDFs that nest no other.
 
-use super::Converter;
+use super::converter::Converter;
 use super::tree::Object;
 use crate::check;
 use crate::constants;
@@ -28,7 +28,7 @@ impl Converter<'_> {
     pub(super) fn conductor(&mut self, bsdf: &Object, name: String) -> Result<Material, SceneError> {
         let scale = self.reflectance(bsdf, "specular_reflectance", 1.0)?;
         let preset = bsdf.string("material")?;
-        // 0.6: the index of what is outside, to which those of the metal are relative.
+        // In Mitsuba 0.6 the metal's index is relative to the exterior index.
         let outside = match bsdf.has("ext_eta") {
             true => self.ior(bsdf, "ext_eta", "vacuum")?,
             false => 1.0,
@@ -39,7 +39,7 @@ impl Converter<'_> {
                 let given = self.colour(bsdf, name)?.unwrap_or(*constant);
                 *constant = given.max(Rgb::ZERO);
                 if given != *constant {
-                    // Colours of measured spectra outside Rec. 709.
+                    // Colours of measured spectra may lie outside Rec. 709.
                     let what = format!("the conductor's {name} is {given}");
                     self.log.warn(&bsdf.place, what, "it is clamped to 0")?;
                 }
@@ -77,14 +77,17 @@ impl Converter<'_> {
                 _ => u,
             };
             let lobe = Lobe::RoughDielectric { distribution, alpha, eta, reflectance, transmittance };
-            return Ok(Material { name, two_sided: true, lobes: vec![lobe], ..Material::default() });
+            return Ok(glass(name, lobe));
         }
-        Ok(glass(name, (eta, bsdf.plugin == "thindielectric"), [reflectance, transmittance]))
+        let thin = bsdf.plugin == "thindielectric";
+        Ok(glass(name, Lobe::Dielectric { eta, thin, reflectance, transmittance }))
     }
 
-    /// Phong and Ward: a Lambert base and a microfacet lobe of the same reflectance. For Phong's it is GGX with the α,
-    /// within 4 %, that is nearest in the mean square over inclinations up to 57°, for exponents from 5 to 1000; Ward's
-    /// is Beckmann's but for its factors of the cosines.
+    /// Returns a Phong or Ward material: a Lambert base and a microfacet lobe of the same reflectance.
+    ///
+    /// For Phong, GGX with α² = 1 / (exponent + 2) replaces the lobe. This α is within 4 % of the least-squares fit
+    /// over inclinations up to 57°, for exponents from 5 to 1000. For Ward, Beckmann of the same α replaces the lobe;
+    /// they differ in factors of the cosines.
     pub(super) fn classic_glossy(&mut self, bsdf: &Object, name: String) -> Result<Material, SceneError> {
         let diffuse = self.reflectance(bsdf, "diffuse_reflectance", 0.5)?;
         let scale = self.reflectance(bsdf, "specular_reflectance", 0.2)?;
@@ -156,7 +159,7 @@ impl Converter<'_> {
         })
     }
 
-    /// Distribution of microfacets, and their roughness along u and v, which is one where it is textured.
+    /// Returns the distribution of microfacets, and their roughness along u and v. Both are equal if textured.
     pub(super) fn facets(&mut self, bsdf: &Object) -> Result<(Distribution, [Roughness; 2]), SceneError> {
         let distribution = match bsdf.string("distribution")?.map(|d| d.to_lowercase()).as_deref() {
             None | Some("beckmann") => Distribution::Beckmann,
@@ -195,7 +198,7 @@ impl Converter<'_> {
         }
     }
 
-    /// A share of light or surface: a number, a colour of that luminance, or a texture.
+    /// Returns a share of light or surface: a number, the luminance of a colour, or a texture.
     pub(super) fn share(&mut self, bsdf: &Object, name: &str, default: f32) -> Result<Share, SceneError> {
         if let Some(colour) = self.colour(bsdf, name)? {
             return Ok(Share::Constant(luminance(colour)));
@@ -215,7 +218,7 @@ impl Converter<'_> {
         })
     }
 
-    /// Interior over exterior.
+    /// Returns the interior over the exterior index of refraction.
     pub(super) fn relative_ior(&mut self, bsdf: &Object, interior: &str) -> Result<f32, SceneError> {
         let (inside, outside) = (self.ior(bsdf, "int_ior", interior)?, self.ior(bsdf, "ext_ior", "air")?);
         Ok((inside / outside) as f32)
@@ -223,7 +226,7 @@ impl Converter<'_> {
 
     pub(super) fn ior(&mut self, bsdf: &Object, name: &str, default: &str) -> Result<f64, SceneError> {
         let material = match bsdf.property(name).map(|p| &p.value) {
-            Some(super::value::Value::String(material)) => material.clone(),
+            Some(super::value::PropertyValue::String(material)) => material.clone(),
             Some(_) => return bsdf.positive(name, 1.0),
             None => default.to_owned(),
         };
@@ -239,12 +242,7 @@ pub(super) fn diffuse(name: String, diffuse: Reflectance) -> Material {
     Material { name, diffuse, ..Material::default() }
 }
 
-/// Glass of an index of refraction, perhaps a thin sheet of it, with factors on reflection and transmission.
-pub(super) fn glass(
-    name: String,
-    (eta, thin): (f32, bool),
-    [reflectance, transmittance]: [Reflectance; 2],
-) -> Material {
-    let lobe = Lobe::Dielectric { eta, thin, reflectance, transmittance };
+/// Returns the material of a single lobe of glass.
+pub(super) fn glass(name: String, lobe: Lobe) -> Material {
     Material { name, two_sided: true, lobes: vec![lobe], ..Material::default() }
 }

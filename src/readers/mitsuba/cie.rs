@@ -1,14 +1,16 @@
-//! CIE 1931 colour-matching functions of the 2° observer and the illuminant D65, and the linear Rec. 709 colour of
-//! sampled spectra.
+//! Linear Rec. 709 colours of sampled spectra.
 //!
-//! Sources: CIE 015:2018, tables 1 and 6 (every 5 nm, between which all are linear); IEC 61966-2-1 for the matrix.
+//! Sources: CIE 015:2018, tables 1 and 6: colour-matching functions of the 2° observer of 1931, and illuminant D65.
+//! Values are linear between the table's wavelengths, every 5 nm. The matrix is that of IEC 61966-2-1.
 //!
 //! Units: wavelengths in nm.
 
 use glam::{DMat3, DVec3};
 
-/// First wavelength of the tables, and their spacing.
+/// First wavelength of the tables.
 const FIRST: f64 = 360.0;
+
+/// Distance between wavelengths of the tables.
 const SPACING: f64 = 5.0;
 
 /// Number of wavelengths at which a spectrum is evaluated, as in Mitsuba.
@@ -21,8 +23,10 @@ const XYZ_TO_RGB: DMat3 = DMat3::from_cols(
     DVec3::new(-0.498535, 0.041556, 1.057311),
 );
 
-/// Colour of a spectrum given by wavelengths in ascending order and values, linear between them and zero outside. A
-/// reflectance is seen under D65, so that 1 everywhere is white; light given off is as it is.
+/// Returns the colour of a spectrum. `samples` are wavelengths in ascending order and values, linear between them and
+/// zero outside.
+///
+/// A reflectance is seen under D65, so that 1 everywhere is white. Emitted light is not weighted.
 pub(super) fn rgb_of_samples(samples: &[(f64, f64)], is_reflectance: bool) -> DVec3 {
     let last = FIRST + SPACING * (XYZ.len() - 1) as f64;
     let (mut sum, mut white) = (DVec3::ZERO, 0.0);
@@ -39,7 +43,7 @@ pub(super) fn rgb_of_samples(samples: &[(f64, f64)], is_reflectance: bool) -> DV
     XYZ_TO_RGB * (sum / white)
 }
 
-/// Radiance of a black body in W/(sr m² nm), by wavelength; `temperature` in kelvin.
+/// Returns the radiance of a black body in W/(sr m² nm) by wavelength; `temperature` is in kelvin.
 ///
 /// Source: Planck's law, with the constants of the SI.
 pub(super) fn blackbody(temperature: f64) -> Vec<(f64, f64)> {
@@ -129,7 +133,7 @@ mod tests {
         let strong = [(400.0, 0.2), (500.0, 0.3), (600.0, 8.0), (700.0, 0.6)];
         let light = rgb_of_samples(&strong, false);
         assert!((light - DVec3::new(9.31634, 3.46937, -0.308329)).length() < 2e-2, "{light}");
-        // By scalar_spectral, whose noise is half a per cent.
+        // Computed by scalar_spectral, whose noise is 0.5 %.
         for (temperature, expected) in [
             (3000.0, DVec3::new(732.9, 350.0, 110.6)),
             (5000.0, DVec3::new(15233.0, 12106.0, 9457.5)),

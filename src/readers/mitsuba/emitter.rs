@@ -1,6 +1,6 @@
-//! Emitters: of shapes, of the whole scene, and delta lights.
+//! Conversion of emitters of shapes and of the scene.
 
-use super::Converter;
+use super::converter::Converter;
 use super::tree::Object;
 use crate::check;
 use crate::error::SceneError;
@@ -87,7 +87,10 @@ impl Converter<'_> {
         Ok(())
     }
 
-    /// Returns the transform without its scale; an error where it shears or is singular.
+    /// Returns the transform without its scale.
+    ///
+    /// # Errors
+    /// If the transform shears or is singular.
     pub(super) fn rotation(&mut self, emitter: &Object, m: DMat4) -> Result<DMat4, SceneError> {
         let [x, y, z] = [m.x_axis, m.y_axis, m.z_axis].map(|a| a.truncate());
         let [Some(a), Some(b), Some(c)] = [x, y, z].map(unit) else {

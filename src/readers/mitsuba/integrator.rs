@@ -1,11 +1,13 @@
-//! The maximum path length, beside `hide_emitters` the only property of the integrator that affects the expected image.
+//! The integrator's maximum path length.
+//!
+//! Only this property and `hide_emitters` affect the expected image.
 
-use super::Converter;
+use super::converter::Converter;
 use super::tree::Object;
 use crate::error::SceneError;
 
 impl Converter<'_> {
-    /// Maximum path length in edges, `None` for no limit.
+    /// Returns the maximum path length in edges; `None` for no limit.
     pub(super) fn max_depth(&mut self, integrator: &Object) -> Result<Option<u32>, SceneError> {
         if integrator.plugin == "direct" {
             return Ok(Some(2));

@@ -1,26 +1,26 @@
-//! Sensors and their film.
+//! Conversion of sensors and their film.
 
-use super::Converter;
+use super::converter::Converter;
 use super::tree::Object;
 use crate::draft::{DraftCamera, Shot};
-use crate::error::{Place, SceneError};
+use crate::error::{Location, SceneError};
 use base::math::{right_of, unit};
 use glam::{DMat4, DVec3};
 use scene::{MAX_SIDE, PixelFilter, Projection};
 use std::rc::Rc;
 
-/// A sensor's film.
-struct Film {
+/// Film of a sensor.
+struct SensorFilm {
     /// Width and height in pixels.
     resolution: [u32; 2],
-    /// Offset and size of the part to render, if it is not the whole.
+    /// Offset and size of the part to render, if not all of it.
     crop: Option<[[u32; 2]; 2]>,
     filter: PixelFilter,
 }
 
 impl Converter<'_> {
-    /// The sensor `wanted` (a number from 1, or an id), else the first, with its film; the longest path; and whether
-    /// emitters in view are hidden.
+    /// Returns the shot of the sensor `wanted` (a number from 1, or an id; else the first), the maximum path length,
+    /// and whether visible emitters are hidden.
     pub(super) fn shot(&mut self, wanted: Option<&str>) -> Result<(Shot, Option<u32>, bool), SceneError> {
         let root = &self.document.root;
         let integrators = self.tagged(root, "integrator")?;
@@ -41,7 +41,7 @@ impl Converter<'_> {
                 return Err(sensor.place.wrong(what, "use type=\"perspective\""));
             }
         }
-        let Film { resolution, crop, filter } = self.film(sensor)?;
+        let SensorFilm { resolution, crop, filter } = self.film(sensor)?;
         let to_world = sensor.transform("to_world")?.unwrap_or(DMat4::IDENTITY);
         let aspect = f64::from(resolution[0]) / f64::from(resolution[1]);
         let near = sensor.positive("near_clip", 1e-2)?;
@@ -57,7 +57,7 @@ impl Converter<'_> {
         }
         let focus_distance = sensor.positive("focus_distance", far)?;
         let (projection, tan_half_x) = match sensor.plugin.as_str() {
-            // The film reaches from -1 to 1, which to_world scales.
+            // The film covers -1 to 1, scaled by to_world.
             "orthographic" => (Projection::Parallel, to_world.transform_vector3(DVec3::X).length()),
             "thinlens" => {
                 let radius = sensor.positive("aperture_radius", 0.0)?;
@@ -74,10 +74,10 @@ impl Converter<'_> {
         Ok((Shot { camera, fits: false, path: Vec::new(), resolution, crop }, max_depth, hides_emitters))
     }
 
-    /// Place of a camera; Mitsuba's looks along +z with +x to the left.
+    /// Returns a camera with its position and axes. Mitsuba's cameras look along +z with +x to the left.
     fn camera(
         &mut self,
-        place: &Place,
+        place: &Location,
         to_world: &DMat4,
         projection: Projection,
     ) -> Result<DraftCamera, SceneError> {
@@ -109,10 +109,10 @@ impl Converter<'_> {
         Ok(DraftCamera { origin, forward, right, up, tan_half_x, near, far, projection, filter })
     }
 
-    fn film(&mut self, sensor: &Object) -> Result<Film, SceneError> {
+    fn film(&mut self, sensor: &Object) -> Result<SensorFilm, SceneError> {
         let films = self.tagged(sensor, "film")?;
         let Some(film) = films.first() else {
-            return Ok(Film { resolution: [768, 576], crop: None, filter: PixelFilter::GAUSSIAN });
+            return Ok(SensorFilm { resolution: [768, 576], crop: None, filter: PixelFilter::GAUSSIAN });
         };
         let size = |name: &str, default: i64| {
             let value = film.integer(name)?.unwrap_or(default);
@@ -141,7 +141,7 @@ impl Converter<'_> {
         let crop = (crop != whole).then_some([[x, y], [width, height]]);
         let filters = self.tagged(film, "rfilter")?;
         let filter = filters.first().map_or(Ok(PixelFilter::GAUSSIAN), |filter| self.filter(filter))?;
-        Ok(Film { resolution, crop, filter })
+        Ok(SensorFilm { resolution, crop, filter })
     }
 
     fn filter(&mut self, object: &Object) -> Result<PixelFilter, SceneError> {
@@ -157,7 +157,7 @@ impl Converter<'_> {
             "tent" => PixelFilter::Tent { radius: object.positive("radius", 1.0)? as f32 },
             "gaussian" => PixelFilter::Gaussian { deviation: object.positive("stddev", 0.5)? as f32 },
             "mitchell" => {
-                // Version 3 calls A and B what version 0.6 and the paper call B and C.
+                // Version 3 names A and B what version 0.6 and the paper name B and C.
                 for name in ["A", "B", "C"] {
                     self.usual(object, name, 1.0 / 3.0)?;
                 }
@@ -179,7 +179,7 @@ impl Converter<'_> {
         Ok(filter)
     }
 
-    /// Notes a filter's parameter that is not the usual one, which stands in.
+    /// Notes that a filter's parameter differs from `usual`, which replaces it.
     fn usual(&mut self, object: &Object, name: &str, usual: f64) -> Result<(), SceneError> {
         let given = object.float(name)?.unwrap_or(usual);
         if (given - usual).abs() > 1e-3 {
@@ -193,7 +193,7 @@ impl Converter<'_> {
 fn chosen<'a>(
     sensors: &'a [Rc<Object>],
     wanted: Option<&str>,
-    place: &Place,
+    place: &Location,
 ) -> Result<&'a Rc<Object>, SceneError> {
     if sensors.is_empty() {
         let remedy = "add <sensor type=\"perspective\"> with a to_world transform";
@@ -206,7 +206,7 @@ fn chosen<'a>(
     number.or_else(named).ok_or_else(missing)
 }
 
-/// Numbers and ids of sensors.
+/// Lists numbers and ids of sensors.
 fn names(sensors: &[Rc<Object>]) -> String {
     let name = |(i, sensor): (usize, &Rc<Object>)| match &sensor.id {
         Some(id) => format!("{} ({id})", i + 1),
@@ -215,7 +215,7 @@ fn names(sensors: &[Rc<Object>]) -> String {
     sensors.iter().enumerate().map(name).collect::<Vec<_>>().join(", ")
 }
 
-/// Horizontal field of view, radians.
+/// Returns the horizontal field of view in radians.
 fn horizontal_fov(sensor: &Object, aspect: f64) -> Result<f64, SceneError> {
     let wrong = |what: String, remedy: &str| sensor.place.wrong(what, remedy);
     let (fov, axis) = match (sensor.float("fov")?, sensor.property("focal_length")) {
@@ -231,7 +231,7 @@ fn horizontal_fov(sensor: &Object, aspect: f64) -> Result<f64, SceneError> {
             let millimetres = text.trim_end_matches("mm").trim().parse::<f64>().ok().filter(|v| *v > 0.0);
             let millimetres = millimetres
                 .ok_or_else(|| wrong(format!("cannot read focal_length \"{text}\""), "write e.g. 50mm"))?;
-            // The diagonal of 35 mm film.
+            // 35 mm film is 36 mm by 24 mm; the focal length refers to its diagonal.
             (2.0 * (36f64.hypot(24.0) / (2.0 * millimetres)).atan(), "diagonal".into())
         }
     };

@@ -1,19 +1,20 @@
-//! Shapes: meshes from files and analytic shapes.
+//! Conversion of shapes: meshes from files, and analytic shapes.
 
-use super::Converter;
+use super::converter::Converter;
 use super::tree::Object;
 use crate::error::SceneError;
 use crate::file::stem_of;
 use crate::mesh::{Normals, Placement, shapes};
-use crate::plan::{Geometry, MaterialPlan, MeshPlan, Selection};
+use crate::plan::{MaterialPlan, MeshPlan, MeshSource};
+use crate::selection::PartSelection;
 use glam::{DMat4, DVec3};
 use scene::{Material, MaterialId};
 
 impl Converter<'_> {
-    /// Adds a shape that `outer` places: a mesh, or those of a group.
+    /// Adds a shape with the outer transform `outer`: a mesh, or the meshes of a group.
     pub(super) fn shape(&mut self, shape: &Object, outer: DMat4) -> Result<(), SceneError> {
         match shape.plugin.as_str() {
-            // A group shows itself by its instances.
+            // A group is visible through its instances only.
             "shapegroup" => Ok(()),
             "instance" => self.instance(shape, outer),
             "merge" => self.members(shape, outer),
@@ -62,47 +63,53 @@ impl Converter<'_> {
         }
     }
 
-    fn mesh(&mut self, shape: &Object, outer: DMat4) -> Result<(), SceneError> {
+    /// Returns the source of a mesh, and whether its v counts downwards; `None` for a shape that is not modelled.
+    fn geometry(&mut self, shape: &Object) -> Result<Option<(MeshSource, bool)>, SceneError> {
         let mut v_down = true;
         let geometry = match shape.plugin.as_str() {
-            // The file's v, flipped by default for OBJ, counts downwards; ours counts upwards.
+            // OBJ files of Mitsuba flip v by default, so it counts downwards. The renderer counts upwards.
             "obj" => {
                 v_down = !shape.boolean("flip_tex_coords", true)?;
-                Geometry::Obj(self.file(shape, "filename")?, Selection::default())
+                MeshSource::Obj(self.file(shape, "filename")?, PartSelection::default())
             }
             "ply" => {
                 v_down = !shape.boolean("flip_tex_coords", false)?;
-                Geometry::Ply(self.file(shape, "filename")?)
+                MeshSource::Ply(self.file(shape, "filename")?)
             }
             "serialized" => {
                 let index = shape.integer("shape_index")?.unwrap_or(0);
                 let negative = || shape.place.wrong(format!("shape_index is {index}"), "give 0 or more");
                 let index = usize::try_from(index).map_err(|_| negative())?;
-                Geometry::Serialized(self.file(shape, "filename")?, index)
+                MeshSource::Serialized(self.file(shape, "filename")?, index)
             }
-            "rectangle" => Geometry::Ready(shapes::rectangle()),
-            "cube" => Geometry::Ready(shapes::cube()),
+            "rectangle" => MeshSource::Ready(shapes::rectangle()),
+            "cube" => MeshSource::Ready(shapes::cube()),
             "disk" => {
                 self.tessellated(shape);
-                Geometry::Ready(shapes::disk())
+                MeshSource::Ready(shapes::disk())
             }
             "sphere" => {
                 self.tessellated(shape);
                 let centre = shape.vector("center")?.unwrap_or(DVec3::ZERO);
-                Geometry::Ready(shapes::sphere(centre, shape.positive("radius", 1.0)?))
+                MeshSource::Ready(shapes::sphere(centre, shape.positive("radius", 1.0)?))
             }
             "cylinder" => {
                 self.tessellated(shape);
                 let p0 = shape.vector("p0")?.unwrap_or(DVec3::ZERO);
                 let p1 = shape.vector("p1")?.unwrap_or(DVec3::Z);
-                Geometry::Ready(shapes::cylinder(p0, p1, shape.positive("radius", 1.0)?))
+                MeshSource::Ready(shapes::cylinder(p0, p1, shape.positive("radius", 1.0)?))
             }
             other => {
                 let what = format!("the shape \"{other}\" is not modelled");
                 self.log.warn(&shape.place, what, "it is left out")?;
-                return Ok(());
+                return Ok(None);
             }
         };
+        Ok(Some((geometry, v_down)))
+    }
+
+    fn mesh(&mut self, shape: &Object, outer: DMat4) -> Result<(), SceneError> {
+        let Some((geometry, v_down)) = self.geometry(shape)? else { return Ok(()) };
         let emission = match self.tagged(shape, "emitter")?.first() {
             Some(emitter) => self.area_emitter(emitter)?,
             None => None,
@@ -120,9 +127,9 @@ impl Converter<'_> {
         shape.ignore(&["collapse", "silhouette_sampling_weight", "max_smooth_angle"]);
         shape.report_unused(self.log)?;
         let name = shape.id.clone().unwrap_or_else(|| match &geometry {
-            Geometry::Obj(path, _) | Geometry::Ply(path) => stem_of(path),
-            Geometry::Serialized(path, index) => format!("{}@{index}", stem_of(path)),
-            Geometry::Ready(_) | Geometry::Shared(_) => shape.plugin.clone(),
+            MeshSource::Obj(path, _) | MeshSource::Ply(path) => stem_of(path),
+            MeshSource::Serialized(path, index) => format!("{}@{index}", stem_of(path)),
+            MeshSource::Ready(_) | MeshSource::Shared(_) => shape.plugin.clone(),
         });
         let place = shape.place.clone();
         let material = MaterialPlan::One(material);

@@ -1,11 +1,11 @@
-//! The emitters `sunsky`, of Mitsuba 3 and 0.6, and `sky` and `sun`, of 0.6.
+//! Conversion of the emitters `sunsky` (Mitsuba 3 and 0.6), `sky` and `sun` (0.6).
 //!
-//! Up is z in 3.x and y in 0.6, as far as `to_world` does not turn it; `sun_direction` is in world space in both.
-//! Dates are local times of a place, by default 10 July 2010, 15:00, in Tokyo.
+//! Up is z in 3.x and y in 0.6, before `to_world`. `sun_direction` is in world space in both. Dates are local times of
+//! a place, by default 10 July 2010, 15:00, in Tokyo.
 //!
-//! Deviations: the sky and the sun of 0.6 are those of Mitsuba 3, which differ in the sun's colour from 0.6's.
+//! Deviations: sky and sun of 0.6 use the model of Mitsuba 3, whose sun has another colour.
 
-use super::Converter;
+use super::converter::Converter;
 use super::tree::Object;
 use crate::error::SceneError;
 use crate::plan::EnvironmentPlan;
@@ -14,7 +14,7 @@ use base::math::unit;
 use glam::{DMat4, DVec3};
 use std::f64::consts::PI;
 
-/// Least factor on the sun's radius: in 0.6, 0 makes it a point.
+/// Minimum factor on the sun's radius. In 0.6, a factor of 0 makes the sun a point.
 const MIN_RADIUS_SCALE: f64 = 0.01;
 
 impl Converter<'_> {
@@ -56,7 +56,7 @@ impl Converter<'_> {
         Ok(())
     }
 
-    /// Unit vector to the sun, before `to_world`.
+    /// Returns the unit vector to the sun, before `to_world`.
     fn sun_of_date(&self, emitter: &Object) -> Result<DVec3, SceneError> {
         let default = Moment::default();
         let number = |name: &str, default: f64| Ok(emitter.float(name)?.unwrap_or(default));

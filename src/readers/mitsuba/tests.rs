@@ -1,7 +1,7 @@
 mod errors;
 mod films;
 
-use crate::{Level, LoadOptions, Loaded, load};
+use crate::{LoadOptions, Loaded, Severity, load};
 use base::math::Rgb;
 use glam::{DVec3, Vec3};
 use scene::{
@@ -14,10 +14,10 @@ const SENSOR: &str = "<sensor type=\"perspective\"><float name=\"fov\" value=\"9
     <film type=\"hdrfilm\"><integer name=\"width\" value=\"8\"/><integer name=\"height\" value=\"4\"/>\
     <rfilter type=\"box\"/></film></sensor>\n";
 
-/// Light, so that reading does not warn of its lack.
+/// Light that avoids the warning of a dark scene.
 const SKY: &str = "<emitter type=\"constant\"/>";
 
-/// Loads a scene whose fourth line is the first of `body`, with the given files beside it.
+/// Loads a scene with the given files beside it. Line 4 of the scene is the first of `body`.
 fn load_with(body: &str, files: &[(&str, &str)], strict: bool) -> Result<Loaded, String> {
     let folder = tempfile::tempdir().unwrap();
     for (name, text) in files {
@@ -281,7 +281,7 @@ fn instances_are_placed_copies_of_their_group() {
     assert!((middle(2) - DVec3::new(1.0, 0.0, 9.0)).length() < 1e-5, "{}", middle(2));
     assert_eq!(loaded.scene.materials.len(), 1);
     let [note] = &loaded.warnings[..] else { panic!("{:?}", loaded.warnings) };
-    assert!(note.level == Level::Note && note.what.contains("4 meshes"), "{note}");
+    assert!(note.severity == Severity::Note && note.what.contains("4 meshes"), "{note}");
     let nested = "<shape type=\"shapegroup\" id=\"h\"><ref id=\"h\"/></shape>\
         <shape type=\"instance\"><ref id=\"h\"/></shape><shape type=\"merge\" id=\"m\"><ref id=\"m\"/></shape>";
     let message = load_body(nested).unwrap_err();

@@ -1,27 +1,29 @@
-//! Colours and textures. A bitmap's v counts downwards in Mitsuba and upwards here, so `to_uv` is conjugated
-//! with that flip.
+//! Conversion of colours and textures.
+//!
+//! Mitsuba's v of bitmaps counts downwards, the renderer's upwards. So `to_uv` is conjugated with a flip.
 
+use super::converter::Converter;
 use super::tree::Object;
-use super::value::Value;
-use super::{Converter, cie, value};
-use crate::error::{Place, SceneError};
+use super::value::PropertyValue;
+use super::{cie, value};
+use crate::decode::DecodedImage;
+use crate::error::{Location, SceneError};
 use crate::file::read_text;
-use crate::picture::Picture;
-use crate::plan::{Image, TexturePlan};
+use crate::plan::{TexturePlan, TextureSource};
 use base::math::Rgb;
 use glam::{DMat3, DMat4, DVec2, DVec3};
 use scene::{Filter, Reflectance, Texels, Wrap};
 
-/// RGB value in Mitsuba's `rgb` variants of an emissive spectrum of 1 at every wavelength.
+/// RGB value of an emissive spectrum of 1 at every wavelength, in Mitsuba's `rgb` variants.
 const EQUAL_ENERGY: DVec3 = DVec3::new(1.204795, 0.94829, 0.908915);
 
 impl Converter<'_> {
-    /// A constant colour, or `None` where the parameter is absent or a texture.
+    /// Returns a constant reflectance colour; `None` if the parameter is absent or a texture.
     pub(super) fn colour(&mut self, object: &Object, name: &str) -> Result<Option<Rgb>, SceneError> {
         self.spectrum(object, name, false)
     }
 
-    /// The same for light given off.
+    /// Returns a constant colour of emitted light; `None` if the parameter is absent.
     pub(super) fn emissive_colour(&mut self, object: &Object, name: &str) -> Result<Option<Rgb>, SceneError> {
         let colour = self.spectrum(object, name, true)?;
         let object = if colour.is_none() { self.document.named(object, name)? } else { None };
@@ -38,12 +40,12 @@ impl Converter<'_> {
         let Some(property) = object.property(name) else { return Ok(None) };
         let white = if emissive { EQUAL_ENERGY } else { DVec3::ONE };
         let colour = match &property.value {
-            Value::Rgb(colour) => *colour,
-            Value::Float(v) => DVec3::splat(*v),
-            Value::Integer(v) => DVec3::splat(*v as f64),
-            Value::Spectrum(v) => white * *v,
-            Value::Samples(samples) => self.sampled(samples, emissive, &property.place),
-            Value::SamplesFile(name) => {
+            PropertyValue::Rgb(colour) => *colour,
+            PropertyValue::Float(v) => DVec3::splat(*v),
+            PropertyValue::Integer(v) => DVec3::splat(*v as f64),
+            PropertyValue::Spectrum(v) => white * *v,
+            PropertyValue::Samples(samples) => self.sampled(samples, emissive, &property.place),
+            PropertyValue::SamplesFile(name) => {
                 let path = self.beside(name, &property.place);
                 let (text, hash) = read_text(&path, &property.place)?;
                 if !self.sources.iter().any(|source| source.0 == path) {
@@ -51,7 +53,7 @@ impl Converter<'_> {
                 }
                 let samples = value::samples_of_file(&text).map_err(|line| {
                     let remedy = "write a wavelength in nm and a value a line, wavelengths ascending";
-                    Place::line(&path, line).wrong("this is no sampled spectrum", remedy)
+                    Location::line(&path, line).wrong("this is no sampled spectrum", remedy)
                 })?;
                 self.sampled(&samples, emissive, &property.place)
             }
@@ -63,8 +65,8 @@ impl Converter<'_> {
         Ok(Some(value::rgb(colour)))
     }
 
-    /// Colour of a sampled spectrum; as in Mitsuba, without what Rec. 709 cannot hold.
-    fn sampled(&mut self, samples: &[(f64, f64)], emissive: bool, place: &Place) -> DVec3 {
+    /// Returns the colour of a sampled spectrum, clamped to Rec. 709 as in Mitsuba.
+    fn sampled(&mut self, samples: &[(f64, f64)], emissive: bool, place: &Location) -> DVec3 {
         let rgb = cie::rgb_of_samples(samples, !emissive);
         let limit = if emissive { f64::INFINITY } else { 1.0 };
         let clamped = rgb.clamp(DVec3::ZERO, DVec3::splat(limit));
@@ -75,7 +77,7 @@ impl Converter<'_> {
         clamped
     }
 
-    /// A reflectance: constant or textured.
+    /// Returns a reflectance, constant or textured.
     pub(super) fn reflectance(
         &mut self,
         object: &Object,
@@ -85,7 +87,7 @@ impl Converter<'_> {
         self.reflectance_within(object, name, default, 0)
     }
 
-    /// The same of a texture that so many others hold.
+    /// Returns a reflectance inside `depth` nested textures.
     fn reflectance_within(
         &mut self,
         object: &Object,
@@ -102,7 +104,7 @@ impl Converter<'_> {
         }
     }
 
-    /// The texture object as a reflectance.
+    /// Converts a texture object to a reflectance.
     pub(super) fn texture(&mut self, object: &Object, depth: u32) -> Result<Reflectance, SceneError> {
         if object.tag != "texture" {
             let what = format!("a <{}> stands where a texture is expected", object.tag);
@@ -137,7 +139,7 @@ impl Converter<'_> {
         Ok(reflectance)
     }
 
-    /// Mitsuba 0.6: another texture times a constant.
+    /// Converts a `scale` texture of Mitsuba 0.6: another texture times a constant.
     fn scaled(&mut self, object: &Object, depth: u32) -> Result<Reflectance, SceneError> {
         let factor = match object.float("scale") {
             Ok(Some(v)) => Rgb::splat(v as f32),
@@ -178,7 +180,7 @@ impl Converter<'_> {
         };
         let mut raw = object.boolean("raw", false)?;
         if let Some(gamma) = object.float("gamma")? {
-            // Mitsuba 0.6: 1 means linear, -1 the encoding stated in the file.
+            // In Mitsuba 0.6, a gamma of 1 means linear, and -1 the encoding that the file states.
             raw |= gamma == 1.0;
             if gamma != 1.0 && gamma > 0.0 {
                 self.log.warn(
@@ -200,7 +202,7 @@ impl Converter<'_> {
         let place = object.place.clone();
         let texture = self.contents.add_texture(TexturePlan {
             place,
-            image: Image::File { path, raw },
+            image: TextureSource::File { path, raw },
             filter,
             wrap,
             to_uv,
@@ -208,7 +210,7 @@ impl Converter<'_> {
         Ok(Reflectance::Textured { texture, scale: Rgb::ONE })
     }
 
-    /// Two by two texels without interpolation: the squares are half a unit wide.
+    /// Converts a checkerboard to two by two texels without interpolation. A square is half a unit wide.
     fn checkerboard(&mut self, object: &Object, depth: u32) -> Result<Reflectance, SceneError> {
         let mut texel =
             |name: &str, default: f32| match self.reflectance_within(object, name, default, depth + 1)? {
@@ -219,10 +221,10 @@ impl Converter<'_> {
             };
         let (even, odd) = (texel("color0", 0.4)?, texel("color1", 0.2)?);
         let texels = Texels::new(2, &[even, odd, odd, even]);
-        let picture = Picture { width: 2, height: 2, texels };
+        let image = DecodedImage { width: 2, height: 2, texels };
         let texture = self.contents.add_texture(TexturePlan {
             place: object.place.clone(),
-            image: Image::Ready("checkerboard".into(), picture),
+            image: TextureSource::Ready("checkerboard".into(), image),
             filter: Filter::Nearest,
             wrap: Wrap::Repeat,
             to_uv: self.to_uv(object)?,
@@ -238,14 +240,14 @@ impl Converter<'_> {
         let get = |name: &str, default: f64| Ok(object.float(name)?.unwrap_or(default));
         let offset = DVec2::new(get("uoffset", 0.0)?, get("voffset", 0.0)?);
         let scale = DVec2::new(get("uscale", 1.0)?, get("vscale", 1.0)?);
-        // These four exist in Mitsuba 0.6 only, which scales first.
+        // Mitsuba 0.6 alone has these four parameters. It scales first.
         let to_uv = to_uv * DMat3::from_translation(offset) * DMat3::from_scale(scale);
         let flip = DMat3::from_cols(DVec3::X, DVec3::NEG_Y, DVec3::new(0.0, 1.0, 1.0));
         Ok((flip * to_uv * flip).as_mat3())
     }
 }
 
-/// The part of a transform that acts in the xy plane.
+/// Returns the part of a transform that acts in the xy plane.
 fn planar(m: &DMat4) -> DMat3 {
     let column = |c: glam::DVec4, w: f64| DVec3::new(c.x, c.y, w);
     DMat3::from_cols(column(m.x_axis, 0.0), column(m.y_axis, 0.0), column(m.w_axis, 1.0))

@@ -1,36 +1,38 @@
-//! Mitsuba XML to a tree of objects with typed properties: `<default>`, `<include>`, `<alias>` and
-//! `$parameters` are resolved here, and the camelCase names of Mitsuba 0.6 become those of 3.x.
+//! Parser of Mitsuba XML to a tree of objects with typed properties.
+//!
+//! The parser resolves `<default>`, `<include>`, `<alias>` and `$parameters`. It converts the camelCase names of
+//! Mitsuba 0.6 to those of 3.x.
 
-use super::value::{self, Value};
-use crate::error::{Log, Place, SceneError};
+use super::value::{self, PropertyValue};
+use crate::error::{Location, Log, SceneError};
 use crate::file::{folder_of, read_text};
 use std::cell::Cell;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
-/// Maximum nesting of elements, and of included files; deeper is an error, and no real scene is.
+/// Maximum nesting of elements and of included files.
 const MAX_DEPTH: usize = 48;
-/// Maximum number of files of a scene; files that include the next one twice would be two to the power of their number.
+/// Maximum number of files of a scene. A chain of n files that each include the next one twice would have 2ⁿ.
 const MAX_FILES: usize = 4096;
-/// Maximum number of bytes that all `$parameters` of a scene become; values made of values would have no end.
+/// Maximum number of bytes that `$parameters` expand to. Values made of values would grow without limit.
 const MAX_SUBSTITUTED: usize = 1 << 24;
 
-/// A plugin instance: `<bsdf type="diffuse" id="a">` and its contents.
+/// An instance of a plugin, such as `<bsdf type="diffuse" id="a">`, and its content.
 #[derive(Debug)]
 pub(super) struct Object {
-    /// `bsdf`, `shape`, `emitter`, ...
+    /// Tag: `bsdf`, `shape`, `emitter`, ...
     pub tag: String,
-    /// The `type` attribute; `scene` for the root.
+    /// Attribute `type`; `scene` for the root.
     pub plugin: String,
     pub id: Option<String>,
-    pub place: Place,
-    pub properties: Vec<Property>,
-    pub children: Vec<Child>,
+    pub place: Location,
+    pub properties: Vec<ObjectProperty>,
+    pub children: Vec<ChildObject>,
 }
 
 impl Object {
-    fn new(tag: &str, plugin: &str, id: Option<&str>, place: Place) -> Object {
+    fn new(tag: &str, plugin: &str, id: Option<&str>, place: Location) -> Object {
         let (tag, plugin, id) = (tag.to_owned(), plugin.to_owned(), id.map(str::to_owned));
         Object { tag, plugin, id, place, properties: Vec::new(), children: Vec::new() }
     }
@@ -38,62 +40,62 @@ impl Object {
 
 /// A named value.
 #[derive(Debug)]
-pub(super) struct Property {
+pub(super) struct ObjectProperty {
     pub name: String,
-    pub value: Value,
-    pub place: Place,
+    pub value: PropertyValue,
+    pub place: Location,
     /// True if a converter has asked for it; unused properties are reported.
     pub used: Cell<bool>,
 }
 
 /// An object inside another, directly or by reference.
 #[derive(Debug)]
-pub(super) struct Child {
-    pub target: Target,
-    /// Name of the parameter that it is the value of.
+pub(super) struct ChildObject {
+    pub target: ChildTarget,
+    /// Name of the parameter whose value the object is.
     pub name: Option<String>,
-    pub place: Place,
-    /// Used flag, as [`Property::used`].
+    pub place: Location,
+    /// True if a converter has asked for it.
     pub used: Cell<bool>,
 }
 
 /// Target of a child: an object or a reference.
 #[derive(Debug)]
-pub(super) enum Target {
+pub(super) enum ChildTarget {
     Own(Rc<Object>),
     Reference(String),
 }
 
-/// A whole description.
+/// A parsed description.
 #[derive(Debug)]
-pub(super) struct Document {
+pub(super) struct SceneXml {
     pub root: Object,
     ids: BTreeMap<String, Rc<Object>>,
-    /// The files read, main file first, with the hash of their bytes.
+    /// Files read, main file first, with the hash of the bytes of each.
     pub sources: Vec<(PathBuf, u64)>,
-    /// True if the main file is Mitsuba 0.x's.
+    /// True if the main file is of Mitsuba 0.x.
     pub is_old: bool,
 }
 
-impl Document {
-    /// Reads a file and those that it includes; errors within objects are left in `log`.
-    pub fn read(path: &Path, given: &[(String, String)], log: &mut Log) -> Result<Document, SceneError> {
-        let mut builder = Builder::new(given, log);
-        let mut root = Object::new("scene", "scene", None, Place::file(path));
-        builder.file(path, &Place::file(path), &mut root, None, 0)?;
+impl SceneXml {
+    /// Reads a file and the files that it includes. Errors within objects go to `log`.
+    pub fn read(path: &Path, given: &[(String, String)], log: &mut Log) -> Result<SceneXml, SceneError> {
+        let mut builder = XmlReader::new(given, log);
+        let mut root = Object::new("scene", "scene", None, Location::file(path));
+        builder.file(path, &Location::file(path), &mut root, None, 0)?;
         for (name, _) in builder.parameters.iter().filter(|(_, parameter)| !parameter.used.get()) {
             let what = format!("nothing in the scene depends on the parameter ${name}");
             let remedy = "correct the name given with -D, or leave it out";
-            builder.log.part::<()>(Err(Place::file(path).wrong(what, remedy)));
+            builder.log.part::<()>(Err(Location::file(path).wrong(what, remedy)));
         }
-        Ok(Document { root, ids: builder.ids, sources: builder.sources, is_old: builder.is_old })
+        Ok(SceneXml { root, ids: builder.ids, sources: builder.sources, is_old: builder.is_old })
     }
 
     /// Returns the object that a child refers to.
-    pub fn object(&self, child: &Child) -> Result<Rc<Object>, SceneError> {
+    pub fn object(&self, child: &ChildObject) -> Result<Rc<Object>, SceneError> {
         match &child.target {
-            Target::Own(object) => Ok(object.clone()),
-            Target::Reference(id) => {
+            ChildTarget::Own(object) => Ok(object.clone()),
+            ChildTarget::Reference(id) => {
                 let missing = || child.place.undefined("object", id);
                 self.ids.get(id).cloned().ok_or_else(missing)
             }
@@ -121,38 +123,38 @@ impl Document {
 }
 
 /// The value of a `$name` parameter.
-struct Parameter {
+struct GivenParameter {
     value: String,
-    /// True if the description has a default for it, or uses it.
+    /// True if the description uses it or has a default for it.
     used: Cell<bool>,
 }
 
-struct Builder<'a> {
+struct XmlReader<'a> {
     log: &'a mut Log,
     ids: BTreeMap<String, Rc<Object>>,
     /// Values of `$name` parameters.
-    parameters: BTreeMap<String, Parameter>,
-    /// Bytes that they have become so far.
+    parameters: BTreeMap<String, GivenParameter>,
+    /// Number of bytes that parameters have expanded to so far.
     substituted: Cell<usize>,
     sources: Vec<(PathBuf, u64)>,
     is_old: bool,
 }
 
-impl Builder<'_> {
-    fn new<'a>(given: &[(String, String)], log: &'a mut Log) -> Builder<'a> {
+impl XmlReader<'_> {
+    fn new<'a>(given: &[(String, String)], log: &'a mut Log) -> XmlReader<'a> {
         let parameter = |(name, value): &(String, String)| {
-            (name.clone(), Parameter { value: value.clone(), used: Cell::new(false) })
+            (name.clone(), GivenParameter { value: value.clone(), used: Cell::new(false) })
         };
         let parameters = given.iter().map(parameter).collect();
         let substituted = Cell::new(0);
-        Builder { log, ids: BTreeMap::new(), parameters, substituted, sources: Vec::new(), is_old: false }
+        XmlReader { log, ids: BTreeMap::new(), parameters, substituted, sources: Vec::new(), is_old: false }
     }
 
-    /// Reads the file into `parent`: the contents of a scene, or its only object under `name`.
+    /// Reads a file into `parent`: the content of a scene, or a single object under `name`.
     fn file(
         &mut self,
         path: &Path,
-        from: &Place,
+        from: &Location,
         parent: &mut Object,
         name: Option<String>,
         depth: usize,
@@ -164,7 +166,7 @@ impl Builder<'_> {
         let (text, hash) = read_text(path, from)?;
         self.sources.push((path.to_owned(), hash));
         let parsed = roxmltree::Document::parse(&text);
-        let document = parsed.map_err(|e| Place::line(path, e.pos().row).malformed(e.to_string()))?;
+        let document = parsed.map_err(|e| Location::line(path, e.pos().row).malformed(e.to_string()))?;
         let root = document.root_element();
         if root.tag_name().name() == "scene" {
             let place = self.place(path, &root);
@@ -180,11 +182,11 @@ impl Builder<'_> {
         Ok(())
     }
 
-    fn place(&self, path: &Path, node: &roxmltree::Node) -> Place {
-        Place::line(path, node.document().text_pos_at(node.range().start).row)
+    fn place(&self, path: &Path, node: &roxmltree::Node) -> Location {
+        Location::line(path, node.document().text_pos_at(node.range().start).row)
     }
 
-    /// Reads the elements inside `node` into `parent`; one with an error is left out.
+    /// Reads the elements inside `node` into `parent`. Elements with an error are left out.
     fn contents(&mut self, path: &Path, node: &roxmltree::Node, parent: &mut Object, depth: usize) {
         for child in node.children().filter(|child| child.is_element()) {
             let read = self.element(path, &child, parent, None, depth + 1);
@@ -210,7 +212,7 @@ impl Builder<'_> {
             let what = format!("<{}> lacks the attribute \"{name}\"", node.tag_name().name());
             get(name).ok_or_else(|| place.wrong(what, format!("add {name}=\"...\"")))
         };
-        let child = |target: Target| Child {
+        let child = |target: ChildTarget| ChildObject {
             target,
             name: given_name.as_deref().or(get("name")).map(snake_case),
             place: place.clone(),
@@ -219,7 +221,7 @@ impl Builder<'_> {
         match node.tag_name().name() {
             "default" => {
                 let (name, value) = (need("name")?.to_owned(), need("value")?.to_owned());
-                let default = Parameter { value, used: Cell::new(true) };
+                let default = GivenParameter { value, used: Cell::new(true) };
                 self.parameters.entry(name).or_insert(default).used.set(true);
             }
             "include" => {
@@ -231,38 +233,24 @@ impl Builder<'_> {
                 let object = self.ids.get(id).cloned().ok_or_else(|| place.undefined("object", id))?;
                 self.ids.insert(need("as")?.to_owned(), object);
             }
-            "ref" => parent.children.push(child(Target::Reference(need("id")?.to_owned()))),
+            "ref" => parent.children.push(child(ChildTarget::Reference(need("id")?.to_owned()))),
             "path" => {
-                // A folder to search; file names here are relative to the file that holds them.
+                // The path is a folder to search. It has no effect, since file names are relative to their own file.
                 need("value")?;
             }
             tag if is_object(tag) || (tag == "spectrum" && get("type").is_some()) => {
                 let kind = if tag == "spectrum" { "texture" } else { tag };
                 let mut object = Object::new(kind, need("type")?, get("id"), place.clone());
                 self.contents(path, node, &mut object, depth);
-                let object = Rc::new(object);
-                if let Some(id) = &object.id
-                    && let Some(other) = self.ids.insert(id.clone(), object.clone())
-                {
-                    let what = format!("the id \"{id}\" is already taken at {}", other.place);
-                    return Err(place.wrong(what, "rename one of them"));
-                }
-                parent.children.push(child(Target::Own(object)));
+                parent.children.push(child(ChildTarget::Own(self.declared(object)?)));
             }
             tag => {
-                let value = if tag == "transform" {
-                    let mut operations = Vec::new();
-                    for child in node.children().filter(|n| n.is_element()) {
-                        let place = self.place(path, &child);
-                        let attributes = self.attributes(&child, &place)?;
-                        operations.push((child.tag_name().name().to_owned(), attributes, place));
-                    }
-                    value::transform(&operations)?
-                } else {
-                    value::parse(tag, &attributes, &place)?
+                let value = match tag {
+                    "transform" => self.transform(path, node)?,
+                    _ => value::parse(tag, &attributes, &place)?,
                 };
                 let name = snake_case(need("name")?);
-                parent.properties.push(Property {
+                parent.properties.push(ObjectProperty {
                     name,
                     value,
                     place: place.clone(),
@@ -273,18 +261,40 @@ impl Builder<'_> {
         Ok(())
     }
 
+    /// Registers the id of an object, and returns the object.
+    fn declared(&mut self, object: Object) -> Result<Rc<Object>, SceneError> {
+        let object = Rc::new(object);
+        if let Some(id) = &object.id
+            && let Some(other) = self.ids.insert(id.clone(), object.clone())
+        {
+            let what = format!("the id \"{id}\" is already taken at {}", other.place);
+            return Err(object.place.wrong(what, "rename one of them"));
+        }
+        Ok(object)
+    }
+
+    fn transform(&self, path: &Path, node: &roxmltree::Node) -> Result<PropertyValue, SceneError> {
+        let mut operations = Vec::new();
+        for child in node.children().filter(|n| n.is_element()) {
+            let place = self.place(path, &child);
+            let attributes = self.attributes(&child, &place)?;
+            operations.push((child.tag_name().name().to_owned(), attributes, place));
+        }
+        value::transform(&operations)
+    }
+
     /// Returns the attributes with their `$parameters` replaced.
     fn attributes(
         &self,
         node: &roxmltree::Node,
-        place: &Place,
+        place: &Location,
     ) -> Result<BTreeMap<String, String>, SceneError> {
         let replaced =
             |a: roxmltree::Attribute| Ok((a.name().to_owned(), self.substitute(a.value(), place)?));
         node.attributes().map(replaced).collect()
     }
 
-    fn substitute(&self, text: &str, place: &Place) -> Result<String, SceneError> {
+    fn substitute(&self, text: &str, place: &Location) -> Result<String, SceneError> {
         let mut out = String::new();
         let mut rest = text;
         while let Some(at) = rest.find('$') {
@@ -296,7 +306,7 @@ impl Builder<'_> {
                 continue;
             }
             out.push_str(before);
-            // The longest defined name at the start of the text.
+            // The longest defined name that matches counts.
             let known = self.parameters.iter().filter(|(name, _)| from[1..].starts_with(name.as_str()));
             let Some((name, value)) = known.max_by_key(|(name, _)| name.len()) else {
                 let name = from[1..].split(|c: char| !c.is_alphanumeric() && c != '_').next().unwrap_or("");
@@ -337,7 +347,7 @@ fn is_object(tag: &str) -> bool {
     TAGS.contains(&tag)
 }
 
-/// Converts `intIOR` to `int_ior`, `toWorld` to `to_world`; names of 3.x stay as they are.
+/// Converts `intIOR` to `int_ior` and `toWorld` to `to_world`. Names of 3.x stay unchanged.
 pub(super) fn snake_case(name: &str) -> String {
     let mut out = String::with_capacity(name.len() + 2);
     let mut previous_lower = false;
@@ -346,7 +356,7 @@ pub(super) fn snake_case(name: &str) -> String {
             out.push('_');
         }
         previous_lower = c.is_ascii_lowercase();
-        // A capital at the start or in a 3.x name ("Cr") cannot occur in a parameter's name.
+        // Parameter names have no capital at the start.
         out.push(c.to_ascii_lowercase());
     }
     out
@@ -373,8 +383,8 @@ mod tests {
     #[test]
     fn parameters_are_replaced_longest_first_and_escapes_kept() {
         let mut log = Log::new(false);
-        let builder = Builder::new(&[("a".into(), "1".into()), ("ab".into(), "2".into())], &mut log);
-        let place = Place::line(Path::new("x.xml"), 7);
+        let builder = XmlReader::new(&[("a".into(), "1".into()), ("ab".into(), "2".into())], &mut log);
+        let place = Location::line(Path::new("x.xml"), 7);
         assert_eq!(builder.substitute(r"$a $ab-$a\$z", &place).unwrap(), "1 2-1$z");
         let message = builder.substitute("1 $nope", &place).unwrap_err().to_string();
         assert!(message.contains("x.xml:7") && message.contains("$nope"), "{message}");

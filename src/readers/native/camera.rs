@@ -1,20 +1,20 @@
-//! Camera and walk-through of the native format.
+//! Camera and camera path of the native format.
 
-use super::Builder;
+use super::builder::SceneBuilder;
 use super::path::{Key, KeyedPath};
 use super::text::{CameraText, KeyText, Number, PathText, SceneText};
 use crate::draft::{DEFAULT_RESOLUTION, DraftCamera, Shot};
-use crate::error::{Place, SceneError};
+use crate::error::{Location, SceneError};
 use crate::finish::framing;
 use base::math::{right_of, unit};
 use glam::DVec3;
 use scene::{MAX_FRAMES, MAX_SIDE, PixelFilter, Projection};
 use toml::Spanned;
 
-/// Field of view of cameras that have none, in degrees.
+/// Default field of view, in degrees.
 const DEFAULT_FOV: f64 = 45.0;
 
-impl Builder<'_> {
+impl SceneBuilder<'_> {
     pub(super) fn shot(&self, scene: &SceneText) -> Result<Shot, SceneError> {
         if let (None, Some(shot)) = (&scene.camera, &self.model_shot) {
             let resolution = self.resolution(scene, shot.resolution)?;
@@ -24,7 +24,7 @@ impl Builder<'_> {
         let unspecified = CameraText::default();
         let (place, text) = match &scene.camera {
             Some(text) => (self.file.place(text.span()), text.get_ref()),
-            None => (Place::file(self.file.path), &unspecified),
+            None => (Location::file(self.file.path), &unspecified),
         };
         self.check_fov_axis(text)?;
         self.check_filter(text)?;
@@ -64,7 +64,7 @@ impl Builder<'_> {
         Ok(resolution)
     }
 
-    /// One camera a frame.
+    /// Returns one camera per frame.
     fn path(
         &self,
         text: &CameraText,
@@ -100,7 +100,7 @@ impl Builder<'_> {
         (1..=frames).map(|frame| camera(text, &path.at(frame), resolution, &place)).collect()
     }
 
-    /// Frames of the keys in ascending order, or none if no key has one.
+    /// Returns the frames of the keys in ascending order; empty if no key has a frame.
     fn key_frames(&self, keys: &[Spanned<KeyText>]) -> Result<Vec<usize>, SceneError> {
         let mut frames = Vec::new();
         if keys.iter().all(|key| key.get_ref().frame.is_none()) {
@@ -159,15 +159,15 @@ fn filter(name: &str) -> Option<PixelFilter> {
     }
 }
 
-/// A key; the camera's own up vector and field of view stand where it has none.
-fn key(camera: &CameraText, text: &KeyText, place: &Place) -> Result<Key, SceneError> {
+/// Returns a key. The camera's up vector and field of view are its defaults.
+fn key(camera: &CameraText, text: &KeyText, place: &Location) -> Result<Key, SceneError> {
     let up = text.up.or(camera.up).map_or(DVec3::Y, DVec3::from);
     let fov = fov(camera, text.fov, place)?;
     Ok(Key { origin: text.origin.into(), target: text.target.into(), up, fov })
 }
 
-/// The field of view of a key, degrees: its own or the camera's.
-fn fov(camera: &CameraText, own: Option<Number>, place: &Place) -> Result<f64, SceneError> {
+/// Returns the field of view of a key in degrees: its own or the camera's.
+fn fov(camera: &CameraText, own: Option<Number>, place: &Location) -> Result<f64, SceneError> {
     let fov = own.or(camera.fov).map_or(DEFAULT_FOV, f64::from);
     match fov > 0.0 && fov < 180.0 {
         true => Ok(fov),
@@ -179,7 +179,7 @@ fn camera(
     text: &CameraText,
     key: &Key,
     resolution: [u32; 2],
-    place: &Place,
+    place: &Location,
 ) -> Result<DraftCamera, SceneError> {
     let Key { origin, target, up, fov } = *key;
     let forward = unit(target - origin);

@@ -1,27 +1,31 @@
-//! Colours of the native format, alike wherever one is expected: a number for a grey, linear `[r, g, b]`, `"#rrggbb"`
-//! in sRGB, any of these times a factor, or a picture where a surface carries it.
+//! Colours of the native format.
+//!
+//! A colour is a number for a grey, linear `[r, g, b]`, `"#rrggbb"` in sRGB, or one of these times a factor. Surfaces
+//! also accept an image.
 
-use super::Builder;
+use super::builder::SceneBuilder;
 use super::text::{ColourText, Number, TextureText};
-use crate::error::{Place, SceneError};
-use crate::picture::srgb_to_linear;
+use crate::decode::srgb_to_linear;
+use crate::error::{Location, SceneError};
 use base::math::Rgb;
 use glam::DVec3;
 use scene::Reflectance;
 
 impl ColourText {
-    /// Returns the colour; `what` names it in errors, among them that of a picture.
-    pub fn rgb(&self, what: &str, place: &Place) -> Result<Rgb, SceneError> {
+    /// Returns the colour; `what` names it in errors.
+    ///
+    /// # Errors
+    /// If the colour is an image or not finite.
+    pub fn rgb(&self, what: &str, place: &Location) -> Result<Rgb, SceneError> {
         let colour = self.constant(place)?;
-        let picture =
-            || place.wrong(format!("{what} is a picture"), "give a number, [r, g, b] or \"#rrggbb\"");
-        let colour = colour.ok_or_else(picture)?;
+        let image = || place.wrong(format!("{what} is a picture"), "give a number, [r, g, b] or \"#rrggbb\"");
+        let colour = colour.ok_or_else(image)?;
         let wrong = || place.wrong(format!("{what} is not finite"), "write finite numbers");
         colour.is_finite().then_some(colour).ok_or_else(wrong)
     }
 
-    /// Returns the colour, or nothing for a picture.
-    pub fn constant(&self, place: &Place) -> Result<Option<Rgb>, SceneError> {
+    /// Returns the colour; `None` for an image.
+    pub fn constant(&self, place: &Location) -> Result<Option<Rgb>, SceneError> {
         Ok(match self {
             ColourText::Grey(grey) => Some(Rgb::splat(grey.0 as f32)),
             ColourText::Rgb(rgb) => Some(DVec3::from(*rgb).as_vec3()),
@@ -38,13 +42,13 @@ impl ColourText {
         })
     }
 
-    /// The picture, if it is one, with the factor on its texels.
-    fn picture(&self) -> Option<TextureText> {
+    /// Returns the image with the factor on its texels; `None` for a constant colour.
+    fn image(&self) -> Option<TextureText> {
         match self {
             ColourText::Named(file) => Some(TextureText { file: file.clone(), ..TextureText::default() }),
             ColourText::Texture(texture) => Some(texture.clone()),
             ColourText::Scaled { colour, scale } => {
-                let inner = colour.picture()?;
+                let inner = colour.image()?;
                 Some(TextureText { scale: Some(Number(inner.scale() * scale.0)), ..inner })
             }
             ColourText::Grey(_) | ColourText::Rgb(_) => None,
@@ -52,17 +56,17 @@ impl ColourText {
     }
 }
 
-impl Builder<'_> {
-    /// Returns the colour of a surface, which may be a picture.
-    pub(super) fn colour(&mut self, text: &ColourText, place: &Place) -> Result<Reflectance, SceneError> {
-        match (text.constant(place)?, text.picture()) {
-            (None, Some(picture)) => Ok(self.texture(&picture, place)),
+impl SceneBuilder<'_> {
+    /// Returns the colour of a surface: constant or an image.
+    pub(super) fn colour(&mut self, text: &ColourText, place: &Location) -> Result<Reflectance, SceneError> {
+        match (text.constant(place)?, text.image()) {
+            (None, Some(image)) => Ok(self.texture(&image, place)),
             (colour, _) => Ok(Reflectance::Constant(colour.unwrap_or_default())),
         }
     }
 }
 
-/// Linear colour of six hexadecimal digits in sRGB.
+/// Converts six hexadecimal digits in sRGB to linear colour.
 fn hexadecimal(digits: &str) -> Option<Rgb> {
     if digits.len() != 6 || !digits.bytes().all(|b| b.is_ascii_hexdigit()) {
         return None;

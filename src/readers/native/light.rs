@@ -1,45 +1,27 @@
 //! Lights and environment of the native format.
 
-use super::Builder;
-use super::text::{ColourText, EnvironmentText, LightText, Numbers};
+use super::builder::SceneBuilder;
+use super::text::{ColourText, EnvironmentText, LightText, NumberArray};
 use crate::check;
-use crate::error::SceneError;
+use crate::error::{Location, SceneError};
 use crate::plan::EnvironmentPlan;
 use glam::{DMat4, DVec3, Vec3};
 use scene::DeltaLight;
 use toml::Spanned;
 
-impl Builder<'_> {
+impl SceneBuilder<'_> {
     pub(super) fn light(&mut self, text: &Spanned<LightText>) -> Result<(), SceneError> {
         let place = self.file.place(text.span());
         let text = text.get_ref();
         let missing = |key: &str| {
             place.wrong(format!("the {} light lacks {key}", text.kind), format!("add {key} = ..."))
         };
-        let need = |value: Option<Numbers<3>>, key: &str| value.map(DVec3::from).ok_or_else(|| missing(key));
+        let need =
+            |value: Option<NumberArray<3>>, key: &str| value.map(DVec3::from).ok_or_else(|| missing(key));
         let colour = |value: &Option<ColourText>, key: &str| {
             value.as_ref().ok_or_else(|| missing(key))?.rgb(&format!("the {key}"), &place)
         };
-        let given = [
-            ("position", text.position.is_some()),
-            ("intensity", text.intensity.is_some()),
-            ("target", text.target.is_some()),
-            ("inner_angle", text.inner_angle.is_some()),
-            ("outer_angle", text.outer_angle.is_some()),
-            ("direction", text.direction.is_some()),
-            ("irradiance", text.irradiance.is_some()),
-            ("angle", text.angle.is_some()),
-        ];
-        let known: &[&str] = match text.kind.as_str() {
-            "point" => &["position", "intensity"],
-            "spot" => &["position", "intensity", "target", "inner_angle", "outer_angle"],
-            "directional" => &["direction", "irradiance", "angle"],
-            other => {
-                let what = format!("unknown kind of light \"{other}\"");
-                return Err(place.wrong(what, "use point, spot or directional"));
-            }
-        };
-        check::keys(&format!("{} light", text.kind), known, &given, &place)?;
+        check_keys(text, &place)?;
         let light = match text.kind.as_str() {
             "point" => {
                 let intensity = colour(&text.intensity, "intensity")?;
@@ -90,4 +72,28 @@ impl Builder<'_> {
             }
         }
     }
+}
+
+/// Rejects keys that mean nothing for the kind of light.
+fn check_keys(text: &LightText, place: &Location) -> Result<(), SceneError> {
+    let given = [
+        ("position", text.position.is_some()),
+        ("intensity", text.intensity.is_some()),
+        ("target", text.target.is_some()),
+        ("inner_angle", text.inner_angle.is_some()),
+        ("outer_angle", text.outer_angle.is_some()),
+        ("direction", text.direction.is_some()),
+        ("irradiance", text.irradiance.is_some()),
+        ("angle", text.angle.is_some()),
+    ];
+    let known: &[&str] = match text.kind.as_str() {
+        "point" => &["position", "intensity"],
+        "spot" => &["position", "intensity", "target", "inner_angle", "outer_angle"],
+        "directional" => &["direction", "irradiance", "angle"],
+        other => {
+            let what = format!("unknown kind of light \"{other}\"");
+            return Err(place.wrong(what, "use point, spot or directional"));
+        }
+    };
+    check::keys(&format!("{} light", text.kind), known, &given, place)
 }

@@ -1,12 +1,12 @@
 //! Materials of the native format.
 
-use super::Builder;
+use super::builder::SceneBuilder;
 use super::text::{ColourText, FilterText, MapText, MaterialText, Number, NumberText, TextureText, WrapText};
 use crate::check;
-use crate::error::{Place, SceneError};
+use crate::error::{Location, SceneError};
 use crate::layers;
-use crate::layers::Surface;
-use crate::plan::{Image, TexturePlan};
+use crate::layers::CoatSurface;
+use crate::plan::{TexturePlan, TextureSource};
 use base::math::Rgb;
 use glam::{Mat3, Vec2};
 use scene::{
@@ -15,10 +15,10 @@ use scene::{
 };
 use toml::Spanned;
 
-/// Maximum number of materials in which a material stands, one in the other.
+/// Maximum nesting of materials.
 const MAX_DEPTH: u32 = 8;
 
-impl Builder<'_> {
+impl SceneBuilder<'_> {
     pub(super) fn material(&mut self, text: &Spanned<MaterialText>) -> Result<(), SceneError> {
         let place = self.file.place(text.span());
         let material = self.described(text, 0)?;
@@ -31,7 +31,7 @@ impl Builder<'_> {
         Ok(())
     }
 
-    /// The material of a description that so many others lead to.
+    /// Returns the material of a description that is nested `depth` times.
     fn described(&mut self, text: &Spanned<MaterialText>, depth: u32) -> Result<Material, SceneError> {
         let place = self.file.place(text.span());
         let text = text.get_ref();
@@ -57,8 +57,8 @@ impl Builder<'_> {
         Ok(Material { name: text.name.clone(), opacity, relief, ..material })
     }
 
-    /// The material called `name`, which one at `place` is made of.
-    fn named(&mut self, name: &Option<String>, depth: u32, place: &Place) -> Result<Material, SceneError> {
+    /// Returns the material `name`, a part of the material at `place`.
+    fn named(&mut self, name: &Option<String>, depth: u32, place: &Location) -> Result<Material, SceneError> {
         if depth > MAX_DEPTH {
             return Err(place.wrong("materials are made of each other", "break the circle"));
         }
@@ -71,7 +71,7 @@ impl Builder<'_> {
         self.described(found.ok_or_else(|| place.undefined("material", name))?, depth + 1)
     }
 
-    fn blended(&mut self, text: &MaterialText, depth: u32, place: &Place) -> Result<Material, SceneError> {
+    fn blended(&mut self, text: &MaterialText, depth: u32, place: &Location) -> Result<Material, SceneError> {
         let materials = [self.named(&text.first, depth, place)?, self.named(&text.second, depth, place)?];
         let weight = match text.weight.clone() {
             Some(weight) => self.share(weight, place),
@@ -80,29 +80,28 @@ impl Builder<'_> {
         layers::blended(weight, materials, place, self.log)
     }
 
-    fn coated(&mut self, text: &MaterialText, depth: u32, place: &Place) -> Result<Material, SceneError> {
+    fn coated(&mut self, text: &MaterialText, depth: u32, place: &Location) -> Result<Material, SceneError> {
         let nested = self.named(&text.base, depth, place)?;
-        let eta = text.ior.map_or(1.5, f64::from) as f32;
-        let scale = self.colour(&text.specular.clone().unwrap_or(ColourText::Grey(Number(1.0))), place)?;
+        let eta = index_of_refraction(text);
+        let scale = self.factor(&text.specular, place)?;
         let fresnel = Fresnel::Dielectric(eta);
         let lobe = match text.alpha {
             None => Lobe::Mirror { fresnel, scale },
             Some(_) => self.rough(text, fresnel, scale, place)?,
         };
-        layers::coated(nested, Surface { eta, lobe, through: Rgb::ONE }, place, self.log)
+        layers::coated(nested, CoatSurface { eta, lobe, through: Rgb::ONE }, place, self.log)
     }
 
     fn layers(
         &mut self,
         text: &MaterialText,
-        place: &Place,
+        place: &Location,
     ) -> Result<(Reflectance, Option<Coat>, Option<Lobe>), SceneError> {
         let need = |colour: &Option<ColourText>, key: &str| {
             let what = || format!("the material \"{}\" lacks {key}", text.name);
             colour.clone().ok_or_else(|| place.wrong(what(), format!("add {key} = ...")))
         };
-        let one = || ColourText::Grey(Number(1.0));
-        let ior = text.ior.map_or(1.5, f64::from) as f32;
+        let ior = index_of_refraction(text);
         Ok(match text.kind.as_str() {
             "diffuse" => (self.colour(&need(&text.reflectance, "reflectance")?, place)?, None, None),
             "glossy" => {
@@ -112,7 +111,7 @@ impl Builder<'_> {
             }
             "plastic" | "roughplastic" => {
                 let diffuse = self.colour(&need(&text.diffuse, "diffuse")?, place)?;
-                let scale = self.colour(&text.specular.clone().unwrap_or(one()), place)?;
+                let scale = self.factor(&text.specular, place)?;
                 let fresnel = Fresnel::Dielectric(ior);
                 let lobe = match text.kind.as_str() {
                     "plastic" => Lobe::Mirror { fresnel, scale },
@@ -121,45 +120,56 @@ impl Builder<'_> {
                 let coat = Coat { eta: ior, nonlinear: text.nonlinear.unwrap_or(false) };
                 (diffuse, Some(coat), Some(lobe))
             }
-            "conductor" => {
-                let scale = self.colour(&text.specular.clone().unwrap_or(one()), place)?;
-                let fresnel = self.conductor(text, place)?;
-                let lobe = match text.alpha {
-                    None | Some(NumberText::Number(Number(0.0))) if text.alpha_v.is_some() => {
-                        let what = format!("the roughness of \"{}\" is given along v alone", text.name);
-                        return Err(place.wrong(what, "give alpha, that along u, above 0"));
-                    }
-                    None | Some(NumberText::Number(Number(0.0))) => Lobe::Mirror { fresnel, scale },
-                    Some(_) => self.rough(text, fresnel, scale, place)?,
-                };
-                (Reflectance::BLACK, None, Some(lobe))
-            }
+            "conductor" => (Reflectance::BLACK, None, Some(self.conductor(text, place)?)),
             "mirror" => {
-                let scale = self.colour(&text.reflectance.clone().unwrap_or(one()), place)?;
+                let scale = self.factor(&text.reflectance, place)?;
                 (Reflectance::BLACK, None, Some(Lobe::Mirror { fresnel: Fresnel::One, scale }))
             }
-            "glass" => {
-                let reflectance = self.colour(&text.reflectance.clone().unwrap_or(one()), place)?;
-                let transmittance = self.colour(&text.transmittance.clone().unwrap_or(one()), place)?;
-                let (eta, thin) = (ior, text.thin.unwrap_or(false));
-                let glass = match text.alpha {
-                    None => Lobe::Dielectric { eta, thin, reflectance, transmittance },
-                    Some(_) if thin => {
-                        let what = format!("the glass \"{}\" is thin and rough", text.name);
-                        return Err(place.wrong(what, "leave out thin or alpha"));
-                    }
-                    Some(_) => {
-                        let (distribution, alpha) = self.facets(text, place)?;
-                        Lobe::RoughDielectric { distribution, alpha, eta, reflectance, transmittance }
-                    }
-                };
-                (Reflectance::BLACK, None, Some(glass))
-            }
+            "glass" => (Reflectance::BLACK, None, Some(self.glass(text, place)?)),
             _ => (Reflectance::BLACK, None, None),
         })
     }
 
-    fn conductor(&self, text: &MaterialText, place: &Place) -> Result<Fresnel, SceneError> {
+    fn glass(&mut self, text: &MaterialText, place: &Location) -> Result<Lobe, SceneError> {
+        let reflectance = self.factor(&text.reflectance, place)?;
+        let transmittance = self.factor(&text.transmittance, place)?;
+        let (eta, thin) = (index_of_refraction(text), text.thin.unwrap_or(false));
+        match text.alpha {
+            None => Ok(Lobe::Dielectric { eta, thin, reflectance, transmittance }),
+            Some(_) if thin => {
+                let what = format!("the glass \"{}\" is thin and rough", text.name);
+                Err(place.wrong(what, "leave out thin or alpha"))
+            }
+            Some(_) => {
+                let (distribution, alpha) = self.facets(text, place)?;
+                Ok(Lobe::RoughDielectric { distribution, alpha, eta, reflectance, transmittance })
+            }
+        }
+    }
+
+    fn conductor(&mut self, text: &MaterialText, place: &Location) -> Result<Lobe, SceneError> {
+        let scale = self.factor(&text.specular, place)?;
+        let fresnel = self.metal(text, place)?;
+        match text.alpha {
+            None | Some(NumberText::Number(Number(0.0))) if text.alpha_v.is_some() => {
+                let what = format!("the roughness of \"{}\" is given along v alone", text.name);
+                Err(place.wrong(what, "give alpha, that along u, above 0"))
+            }
+            None | Some(NumberText::Number(Number(0.0))) => Ok(Lobe::Mirror { fresnel, scale }),
+            Some(_) => self.rough(text, fresnel, scale, place),
+        }
+    }
+
+    /// Returns the factor on a lobe, by default 1.
+    fn factor(&mut self, colour: &Option<ColourText>, place: &Location) -> Result<Reflectance, SceneError> {
+        match colour {
+            Some(colour) => self.colour(colour, place),
+            None => Ok(Reflectance::Constant(Rgb::ONE)),
+        }
+    }
+
+    /// Returns the reflectance of a conductor, from its name or its optical constants.
+    fn metal(&self, text: &MaterialText, place: &Location) -> Result<Fresnel, SceneError> {
         match (&text.preset, &text.eta, &text.k) {
             (Some(preset), None, None) => {
                 let (eta, k) = check::conductor(preset, place)?;
@@ -180,7 +190,7 @@ impl Builder<'_> {
         text: &MaterialText,
         fresnel: Fresnel,
         scale: Reflectance,
-        place: &Place,
+        place: &Location,
     ) -> Result<Lobe, SceneError> {
         let (distribution, alpha) = self.facets(text, place)?;
         let Some(Number(across)) = text.alpha_v else {
@@ -201,11 +211,11 @@ impl Builder<'_> {
         }
     }
 
-    /// Distribution and roughness of microfacets.
+    /// Returns the distribution and the roughness of microfacets.
     fn facets(
         &mut self,
         text: &MaterialText,
-        place: &Place,
+        place: &Location,
     ) -> Result<(Distribution, Roughness), SceneError> {
         let alpha = match text.alpha.clone().unwrap_or(NumberText::Number(Number(0.1))) {
             NumberText::Number(Number(alpha)) => {
@@ -215,7 +225,7 @@ impl Builder<'_> {
                 }
                 Roughness::Constant(alpha as f32)
             }
-            NumberText::Picture(file) => self.number(TextureText { file, ..TextureText::default() }, place),
+            NumberText::File(file) => self.number(TextureText { file, ..TextureText::default() }, place),
             NumberText::Texture(texture) => self.number(texture, place),
         };
         let distribution = match text.distribution.as_deref() {
@@ -229,7 +239,7 @@ impl Builder<'_> {
         Ok((distribution, alpha))
     }
 
-    fn principled(&mut self, text: &MaterialText, place: &Place) -> Result<Principled, SceneError> {
+    fn principled(&mut self, text: &MaterialText, place: &Location) -> Result<Principled, SceneError> {
         let base_color = match &text.base_color {
             Some(colour) => self.colour(colour, place)?,
             None => Principled::default().base_color,
@@ -244,7 +254,7 @@ impl Builder<'_> {
             roughness: share(&text.roughness, 0.5),
             anisotropic: text.anisotropic.map_or(0.0, f64::from) as f32,
             anisotropic_rotation: 0.0,
-            eta: text.ior.map_or(1.5, f64::from) as f32,
+            eta: index_of_refraction(text),
             spec_tint: share(&text.spec_tint, 0.0),
             spec_trans: share(&text.spec_trans, 0.0),
             sheen: share(&text.sheen, 0.0),
@@ -254,13 +264,13 @@ impl Builder<'_> {
         })
     }
 
-    fn relief(&mut self, text: &MaterialText, place: &Place) -> Result<Option<Relief>, SceneError> {
+    fn relief(&mut self, text: &MaterialText, place: &Location) -> Result<Option<Relief>, SceneError> {
         if let (Some(_), Some(_)) = (&text.normal_map, &text.bump_map) {
             let what = format!("the material \"{}\" has two reliefs", text.name);
             return Err(place.wrong(what, "leave out normal_map or bump_map"));
         }
         let raw = |map: &MapText| match map.clone() {
-            MapText::Picture(file) => TextureText { file, raw: true, ..TextureText::default() },
+            MapText::File(file) => TextureText { file, raw: true, ..TextureText::default() },
             MapText::Texture(texture) => TextureText { raw: true, ..texture },
         };
         let normals = text.normal_map.as_ref().map(raw).map(|map| Relief::Normals {
@@ -276,26 +286,26 @@ impl Builder<'_> {
         Ok(normals.or(heights))
     }
 
-    fn share(&mut self, text: NumberText, place: &Place) -> Share {
+    fn share(&mut self, text: NumberText, place: &Location) -> Share {
         match text {
             NumberText::Number(Number(number)) => Share::Constant(number as f32),
-            NumberText::Picture(file) => self.number(TextureText { file, ..TextureText::default() }, place),
+            NumberText::File(file) => self.number(TextureText { file, ..TextureText::default() }, place),
             NumberText::Texture(texture) => self.number(texture, place),
         }
     }
 
-    fn number(&mut self, text: TextureText, place: &Place) -> Parameter<f32> {
+    fn number(&mut self, text: TextureText, place: &Location) -> Parameter<f32> {
         let scale = text.scale() as f32;
         let texture = self.texture_id(&TextureText { raw: true, ..text }, place);
         Parameter::Textured { texture, scale }
     }
 
-    pub(super) fn texture(&mut self, text: &TextureText, place: &Place) -> Reflectance {
+    pub(super) fn texture(&mut self, text: &TextureText, place: &Location) -> Reflectance {
         let scale = Rgb::splat(text.scale() as f32);
         Reflectance::Textured { texture: self.texture_id(text, place), scale }
     }
 
-    pub(super) fn texture_id(&mut self, text: &TextureText, place: &Place) -> TextureId {
+    pub(super) fn texture_id(&mut self, text: &TextureText, place: &Location) -> TextureId {
         let wrap = match text.wrap {
             None | Some(WrapText::Repeat) => Wrap::Repeat,
             Some(WrapText::Mirror) => Wrap::Mirror,
@@ -307,13 +317,18 @@ impl Builder<'_> {
         };
         let tiles = text.tiles.map_or([1.0, 1.0], <[f64; 2]>::from).map(|t| t as f32);
         let to_uv = Mat3::from_scale(Vec2::from(tiles));
-        let image = Image::File { path: self.folder.join(&text.file), raw: text.raw };
+        let image = TextureSource::File { path: self.folder.join(&text.file), raw: text.raw };
         self.contents.add_texture(TexturePlan { place: place.clone(), image, filter, wrap, to_uv })
     }
 }
 
-/// Every key that is given must mean something for the kind.
-fn check_keys(text: &MaterialText, place: &Place) -> Result<(), SceneError> {
+/// Returns the index of refraction of a dielectric, by default 1.5.
+fn index_of_refraction(text: &MaterialText) -> f32 {
+    text.ior.map_or(1.5, f64::from) as f32
+}
+
+/// Rejects keys that mean nothing for the kind of material.
+fn check_keys(text: &MaterialText, place: &Location) -> Result<(), SceneError> {
     let known: &[&str] = match text.kind.as_str() {
         "diffuse" | "mirror" => &["reflectance"],
         "glossy" => &["diffuse", "specular", "alpha", "distribution"],

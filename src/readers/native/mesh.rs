@@ -1,12 +1,13 @@
 //! Meshes of the native format: generated parts, files and shapes.
 
-use super::Builder;
+use super::builder::SceneBuilder;
 use super::text::{ColourText, MeshText, NamesText, Number, ScaleText, StepText};
-use crate::error::{Place, SceneError};
+use crate::error::{Location, SceneError};
 use crate::file::stem_of;
 use crate::gltf::{self, FRAMES_PER_SECOND, ImportOptions};
 use crate::mesh::{Normals, Placement, RawMesh, shapes};
-use crate::plan::{Geometry, MaterialPlan, MeshPlan, Selection};
+use crate::plan::{MaterialPlan, MeshPlan, MeshSource};
+use crate::selection::PartSelection;
 use base::math::unit;
 use glam::{DMat4, DVec3};
 use lightsplat_scenes::Part;
@@ -14,7 +15,7 @@ use scene::{Emission, MaterialId, Reflectance};
 use std::path::{Path, PathBuf};
 use toml::Spanned;
 
-impl Builder<'_> {
+impl SceneBuilder<'_> {
     pub(super) fn mesh(&mut self, text: &Spanned<MeshText>) -> Result<(), SceneError> {
         let place = self.file.place(text.span());
         let text = text.get_ref();
@@ -26,12 +27,12 @@ impl Builder<'_> {
             return Err(place.wrong(what, "leave them out"));
         }
         let (name, geometry) = self.geometry(text, &place)?;
-        if !matches!(geometry, Geometry::Obj(..)) && (text.group.is_some() || text.except.is_some()) {
+        if !matches!(geometry, MeshSource::Obj(..)) && (text.group.is_some() || text.except.is_some()) {
             return Err(place.wrong("the mesh has no groups", "leave group and except out"));
         }
         let material = match (self.named_material(text)?, &geometry) {
             (Some(material), _) => MaterialPlan::One(material),
-            (None, Geometry::Obj(path, _)) => self.mtl_materials(path, &place)?,
+            (None, MeshSource::Obj(path, _)) => self.mtl_materials(path, &place)?,
             (None, _) => {
                 return Err(place.wrong("the mesh has no material", "add material = \"...\""));
             }
@@ -42,7 +43,7 @@ impl Builder<'_> {
             to_world: self.transform(&text.transform)?,
             normals: Normals::AsGiven,
             flip_normals: text.flip_normals,
-            // A sphere's v is counted from its north pole.
+            // The v of a sphere counts from its north pole.
             v_down: text.shape.as_deref() == Some("sphere"),
             needs_uv: false,
         };
@@ -50,14 +51,14 @@ impl Builder<'_> {
         Ok(())
     }
 
-    /// The file of a glTF model, if the mesh is one.
+    /// Returns the file of a glTF model; `None` for other meshes.
     fn model(&self, text: &MeshText) -> Option<PathBuf> {
         let path = self.folder.join(text.file.as_ref()?);
         let extension = path.extension()?.to_string_lossy().to_lowercase();
         matches!(extension.as_str(), "glb" | "gltf").then_some(path)
     }
 
-    fn import(&mut self, path: &Path, text: &MeshText, place: &Place) -> Result<(), SceneError> {
+    fn import(&mut self, path: &Path, text: &MeshText, place: &Location) -> Result<(), SceneError> {
         let positive = |value: Option<Number>, key: &str| match value.map(f64::from) {
             Some(value) if value <= 0.0 => {
                 Err(place.wrong(format!("{key} is {value}"), "give a number above 0"))
@@ -95,7 +96,7 @@ impl Builder<'_> {
         &mut self,
         colour: &ColourText,
         text: &MeshText,
-        place: &Place,
+        place: &Location,
     ) -> Result<Emission, SceneError> {
         let (radiance, texture) = match self.colour(colour, place)? {
             Reflectance::Constant(_) => (colour.rgb("the emission", place)?, None),
@@ -104,22 +105,22 @@ impl Builder<'_> {
         Ok(Emission { radiance, texture, two_sided: text.emission_two_sided })
     }
 
-    fn geometry(&mut self, text: &MeshText, place: &Place) -> Result<(String, Geometry), SceneError> {
+    fn geometry(&mut self, text: &MeshText, place: &Location) -> Result<(String, MeshSource), SceneError> {
         match (&text.part, &text.file, &text.shape) {
             (Some(part), None, None) => {
                 let unknown = || place.undefined("generated part", part);
                 let at = self.parts.iter().position(|p| p.name == *part).ok_or_else(unknown)?;
                 self.part_used[at] = true;
-                Ok((part.clone(), Geometry::Ready(raw_part(&self.parts[at]))))
+                Ok((part.clone(), MeshSource::Ready(raw_part(&self.parts[at]))))
             }
             (None, Some(file), None) => {
                 let path = self.folder.join(file);
                 let name = stem_of(&path);
                 let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase());
                 let geometry = match extension.as_deref() {
-                    Some("obj") => Geometry::Obj(path, selection(text)),
-                    Some("ply") => Geometry::Ply(path),
-                    Some("serialized") => Geometry::Serialized(path, text.index.unwrap_or(0)),
+                    Some("obj") => MeshSource::Obj(path, selection(text)),
+                    Some("ply") => MeshSource::Ply(path),
+                    Some("serialized") => MeshSource::Serialized(path, text.index.unwrap_or(0)),
                     _ => {
                         let what = format!("unknown kind of mesh file \"{file}\"");
                         return Err(place.wrong(what, "use .glb, .gltf, .obj, .ply or .serialized"));
@@ -139,7 +140,7 @@ impl Builder<'_> {
                         return Err(place.wrong(format!("unknown shape \"{other}\""), remedy));
                     }
                 };
-                Ok((shape.clone(), Geometry::Ready(raw)))
+                Ok((shape.clone(), MeshSource::Ready(raw)))
             }
             _ => Err(place.wrong("the mesh has no single source", "give one of part, file or shape")),
         }
@@ -157,25 +158,25 @@ impl Builder<'_> {
         Ok(to_world)
     }
 
-    /// Reads the materials of the OBJ's own MTL files, which are assigned by name.
-    fn mtl_materials(&mut self, path: &Path, place: &Place) -> Result<MaterialPlan, SceneError> {
+    /// Reads the materials of the OBJ's MTL files. They are assigned by name.
+    fn mtl_materials(&mut self, path: &Path, place: &Location) -> Result<MaterialPlan, SceneError> {
         let names = self.read_mtl(path, place)?;
         let other = self.default_material(place);
         Ok(MaterialPlan::ByName(names, other))
     }
 }
 
-/// Groups that a mesh asks for.
-fn selection(text: &MeshText) -> Selection {
+/// Returns the groups or nodes that a mesh selects.
+fn selection(text: &MeshText) -> PartSelection {
     let names = |names: &Option<NamesText>| match names {
         None => Vec::new(),
         Some(NamesText::One(name)) => vec![name.clone()],
         Some(NamesText::Several(names)) => names.clone(),
     };
-    Selection { only: names(&text.group), except: names(&text.except) }
+    PartSelection { only: names(&text.group), except: names(&text.except) }
 }
 
-fn matrix(step: &StepText, place: &Place) -> Result<DMat4, SceneError> {
+fn matrix(step: &StepText, place: &Location) -> Result<DMat4, SceneError> {
     Ok(match (&step.scale, &step.rotate, step.translate, step.matrix) {
         (Some(ScaleText::Uniform(s)), None, None, None) => DMat4::from_scale(DVec3::splat(s.0)),
         (Some(ScaleText::Axes(s)), None, None, None) => DMat4::from_scale(DVec3::from(*s)),

@@ -1,11 +1,11 @@
-//! Errors of a description as the TOML library tells them, with the key that they are about and a remedy.
+//! Errors of the TOML parser, with the key that they concern and a remedy.
 
-use super::File;
-use crate::error::{Place, SceneError};
+use super::source::SourceText;
+use crate::error::{Location, SceneError};
 
-/// The error in the words of scene files.
-pub(super) fn of(file: File, error: &toml::de::Error) -> SceneError {
-    let place = error.span().map_or(Place::file(file.path), |span| file.place(span));
+/// Converts an error of the parser.
+pub(super) fn of(file: SourceText, error: &toml::de::Error) -> SceneError {
+    let place = error.span().map_or(Location::file(file.path), |span| file.place(span));
     let message = error.message();
     if file.text.parse::<toml::Table>().is_err() {
         return place.malformed(message);
@@ -21,7 +21,7 @@ pub(super) fn of(file: File, error: &toml::de::Error) -> SceneError {
     place.wrong(what, "correct the value")
 }
 
-/// The key of the value, or of the list of values, that follows `text`.
+/// Returns the key of the value, or list of values, that follows `text`.
 fn key_of(text: &str) -> Option<&str> {
     let mut closed = 0u32;
     let equals = text.rfind(|c| {

@@ -1,37 +1,38 @@
-//! Materials from an OBJ's MTL files.
+//! Conversion of the classic materials in an OBJ's MTL files.
 //!
-//! Classic materials become a dielectric of roughness α = sqrt(2 / (Ns + 2)) over a Lambert base. Ks is its
-//! reflectance at normal incidence, at most that of dielectrics, .08: greater values, such as exporters write for all
-//! materials, say how bright highlights are, not how much is reflected. Over a black Kd they say it: that is a metal.
-//! Illumination models 3 and 5 are mirrors, 4, 6, 7 and 9 glass. d and map_d are the share of the surface that is
-//! there, Ke is emission. All are two-sided.
+//! A classic material becomes a dielectric of roughness α = sqrt(2 / (Ns + 2)) over a Lambert base. Ks is the
+//! reflectance at normal incidence, limited to 0.08, the maximum of dielectrics. Exporters write greater values for all
+//! materials. If Kd is black, the material is a metal of reflectance Ks.
+//!
+//! Illumination models 3 and 5 are mirrors; 4, 6, 7 and 9 are glass. d and map_d are the opacity, Ke is the emission.
+//! All materials are two-sided.
 
-use super::Builder;
+use super::builder::SceneBuilder;
 use super::text::TextureText;
-use crate::error::{Place, SceneError};
+use crate::error::{Location, SceneError};
 use crate::file::{fnv1a, folder_of, read_file};
 use crate::mesh::mtl::{self, ClassicMaterial};
 use crate::mesh::obj;
-use crate::plan::Look;
+use crate::plan::Appearance;
 use base::math::{Rgb, luminance};
 use scene::{Coat, Distribution, Emission, Fresnel, Lobe, Material, MaterialId, Reflectance, Share};
 use std::collections::BTreeMap;
 use std::path::Path;
 
-/// Largest reflectance of dielectrics at normal incidence.
+/// Maximum reflectance of dielectrics at normal incidence.
 const MAX_DIELECTRIC: f32 = 0.08;
 
-impl Builder<'_> {
+impl SceneBuilder<'_> {
     /// Reads the materials of the OBJ's libraries, by name.
     pub(super) fn read_mtl(
         &mut self,
         path: &Path,
-        place: &Place,
-    ) -> Result<BTreeMap<String, Look>, SceneError> {
-        let mut looks = BTreeMap::new();
+        place: &Location,
+    ) -> Result<BTreeMap<String, Appearance>, SceneError> {
+        let mut appearances = BTreeMap::new();
         let text = read_file(path, place)?;
         let used = obj::used_materials(&text);
-        let from = Place::file(path);
+        let from = Location::file(path);
         let folder = folder_of(path);
         for library in obj::material_libraries(&text) {
             let file = folder.join(library.replace('\\', "/"));
@@ -43,21 +44,21 @@ impl Builder<'_> {
                 let material = self.convert_mtl(&source, &file)?;
                 let emission = self.mtl_emission(&source, &file);
                 let material = self.contents.add_material(material, source.place);
-                looks.insert(source.name, Look { material, emission });
+                appearances.insert(source.name, Appearance { material, emission });
             }
         }
-        if looks.is_empty() {
+        if appearances.is_empty() {
             self.log.warn(
                 place,
                 "neither the mesh nor its file has a material",
                 "a grey of 0.5 stands in",
             )?;
         }
-        Ok(looks)
+        Ok(appearances)
     }
 
-    /// Returns the material for faces that the file leaves without one.
-    pub(super) fn default_material(&mut self, place: &Place) -> MaterialId {
+    /// Returns the material of faces without one.
+    pub(super) fn default_material(&mut self, place: &Location) -> MaterialId {
         let grey = Reflectance::Constant(Rgb::splat(0.5));
         let material =
             Material { name: "default".into(), two_sided: true, diffuse: grey, ..Material::default() };
@@ -124,7 +125,7 @@ impl Builder<'_> {
         match &source.opacity_map {
             Some(map) => {
                 let text = TextureText { raw: true, ..self.mtl_file(map, file) };
-                let texture = self.texture_id(&text, &Place::file(file));
+                let texture = self.texture_id(&text, &Location::file(file));
                 Some(Share::Textured { texture, scale })
             }
             None => (scale < 1.0).then_some(Share::Constant(scale)),
@@ -145,10 +146,10 @@ impl Builder<'_> {
 
     fn mtl_texture(&mut self, name: &str, file: &Path) -> Reflectance {
         let text = self.mtl_file(name, file);
-        self.texture(&text, &Place::file(file))
+        self.texture(&text, &Location::file(file))
     }
 
-    /// The picture that an MTL file names.
+    /// Returns the image that an MTL file names.
     fn mtl_file(&self, name: &str, file: &Path) -> TextureText {
         let beside = folder_of(file).join(name.replace('\\', "/"));
         let relative = beside.strip_prefix(&self.folder).unwrap_or(&beside).to_string_lossy().into_owned();

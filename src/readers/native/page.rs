@@ -1,4 +1,4 @@
-//! The page `docs/scene-format.md`, held against the code: keys, types, kinds and defaults.
+//! Tests of the page `docs/scene-format.md` against the code: keys, types, kinds and defaults.
 
 use super::text::{
     CameraText, EnvironmentText, KeyText, LightText, MaterialText, MeshText, PathText, SceneText, SkyText,
@@ -14,15 +14,15 @@ const PAGE: &str = include_str!("../../../docs/scene-format.md");
 
 /// A key of a table, as the page describes it.
 #[derive(Clone, Debug)]
-struct Row {
+struct KeyRow {
     key: &'static str,
     kind: &'static str,
     default: &'static str,
 }
 
-/// Tables of keys with their headings, those of kinds under `parent: kind`.
-fn tables() -> Vec<(String, Vec<Row>)> {
-    let mut tables: Vec<(String, Vec<Row>)> = Vec::new();
+/// Returns the tables of keys with their headings; tables of kinds are named `parent: kind`.
+fn tables() -> Vec<(String, Vec<KeyRow>)> {
+    let mut tables: Vec<(String, Vec<KeyRow>)> = Vec::new();
     let (mut parent, mut heading) = ("", String::new());
     for line in PAGE.lines() {
         if let Some(title) = line.strip_prefix("## ") {
@@ -35,41 +35,41 @@ fn tables() -> Vec<(String, Vec<Row>)> {
         } else if let (Some(row), Some((_, rows))) = (line.strip_prefix("| `"), tables.last_mut()) {
             let cells: Vec<&str> = row.split('|').map(str::trim).collect();
             let [key, kind, _, default, ..] = cells[..] else { panic!("{line}") };
-            rows.push(Row { key: key.trim_end_matches('`'), kind, default });
+            rows.push(KeyRow { key: key.trim_end_matches('`'), kind, default });
         }
     }
     tables
 }
 
-fn table(heading: &str) -> Vec<Row> {
+fn table(heading: &str) -> Vec<KeyRow> {
     let found = tables().into_iter().find(|(name, _)| name == heading);
     found.unwrap_or_else(|| panic!("the page lacks {heading}")).1
 }
 
-/// Kinds and their tables under a heading.
-fn kinds(heading: &str) -> Vec<(String, Vec<Row>)> {
+/// Returns the kinds under a heading, and their tables.
+fn kinds(heading: &str) -> Vec<(String, Vec<KeyRow>)> {
     let prefix = format!("{heading}: `kind = \"");
-    let kind = |(name, rows): (String, Vec<Row>)| {
+    let kind = |(name, rows): (String, Vec<KeyRow>)| {
         Some((name.strip_prefix(&prefix)?.trim_end_matches("\"`").to_owned(), rows))
     };
     tables().into_iter().filter_map(kind).collect()
 }
 
-fn keys(rows: &[Row]) -> BTreeSet<String> {
+fn keys(rows: &[KeyRow]) -> BTreeSet<String> {
     rows.iter().map(|row| row.key.to_owned()).collect()
 }
 
-/// The keys of a table in the code, as its parser lists them.
+/// Returns the keys of a table in the code, as its parser lists them.
 fn known<T: DeserializeOwned>() -> BTreeSet<String> {
     let message = toml::from_str::<T>("zzz = 0").map(|_| ()).unwrap_err().message().to_owned();
     let (_, expected) = message.split_once("expected").unwrap();
     expected.split('`').skip(1).step_by(2).map(str::to_owned).collect()
 }
 
-/// Values that a type of the page takes, and ones that it does not.
+/// Returns values that a type of the page accepts, and values that it rejects.
 fn values(kind: &str) -> (Vec<&'static str>, Vec<&'static str>) {
     let colours = vec!["0.5", "2", "[0.1, 0.2, 3]", "\"#ff8800\"", "{ colour = \"#ff8800\", scale = 9.0 }"];
-    let pictures = vec!["\"a.png\"", "{ file = \"a.png\", tiles = [2, 2] }"];
+    let images = vec!["\"a.png\"", "{ file = \"a.png\", tiles = [2, 2] }"];
     match kind {
         "text" => (vec![], vec!["1", "[1.0]"]),
         "name or names" => (vec!["\"a\"", "[\"a\", \"b\"]"], vec!["1", "[1]"]),
@@ -79,17 +79,17 @@ fn values(kind: &str) -> (Vec<&'static str>, Vec<&'static str>) {
         "vector" => (vec!["[1, 2.5, 3]"], vec!["1", "[1, 2]", "\"#ffffff\""]),
         "pair" => (vec!["[1, 2]"], vec!["1", "[1]"]),
         "colour" => (colours, vec!["true", "[1, 2]"]),
-        "colour or picture" => ([colours, pictures].concat(), vec!["true", "[1, 2]"]),
-        "picture" => (pictures, vec!["true", "0.5"]),
-        "number or picture" => ([vec!["0.5"], pictures].concat(), vec!["true", "[1, 2, 3]"]),
+        "colour or picture" => ([colours, images].concat(), vec!["true", "[1, 2]"]),
+        "picture" => (images, vec!["true", "0.5"]),
+        "number or picture" => ([vec!["0.5"], images].concat(), vec!["true", "[1, 2, 3]"]),
         "moment" => (vec!["2024-06-21T12:00:00Z"], vec!["1", "\"noon\""]),
         "table" | "list of tables" | "list of numbers" => (vec![], vec!["true", "1"]),
         other => panic!("the page has no type \"{other}\""),
     }
 }
 
-/// A value for a key that a scene cannot do without.
-fn sample(row: &Row) -> &'static str {
+/// Returns a value for a required key.
+fn sample(row: &KeyRow) -> &'static str {
     match row.kind {
         _ if row.key == "target" => "[0, 0, 0]",
         "text" => "\"a.png\"",
@@ -98,7 +98,7 @@ fn sample(row: &Row) -> &'static str {
     }
 }
 
-/// Loads a scene, with a picture, a mesh and the material `m`; returns all that comes of it as text.
+/// Loads a scene with an image, a mesh and the material `m`; returns all its content as text.
 fn outcome(text: &str) -> Result<String, String> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/scenes/valid");
     let own = tempfile::tempdir().unwrap();
@@ -111,13 +111,13 @@ fn outcome(text: &str) -> Result<String, String> {
     let sources = loaded.scene.sources.len();
     let scene = scene::Scene { sources: Vec::new(), ..loaded.scene };
     let text = format!("{scene:?} {:?} {sources}", loaded.cameras);
-    // Nobody would read a whole sky.
+    // The texels of a sky are left out.
     Ok(if text.len() > 1 << 20 { format!("{:016x}", fnv1a(text.as_bytes())) } else { text })
 }
 
-/// The scene of a template, `@` replaced by the required keys of the table and `more`.
-fn with(template: &str, rows: &[Row], more: &str) -> String {
-    let is_given = |row: &&Row| row.default == "required" && !template.contains(&format!("{} =", row.key));
+/// Returns the scene of a template: `@` is replaced by the required keys of the table and `more`.
+fn with(template: &str, rows: &[KeyRow], more: &str) -> String {
+    let is_given = |row: &&KeyRow| row.default == "required" && !template.contains(&format!("{} =", row.key));
     let required = rows.iter().filter(is_given).map(|row| format!("{} = {}", row.key, sample(row)));
     let given: Vec<String> = required.chain((!more.is_empty()).then(|| more.to_owned())).collect();
     template.replace('@', &given.join(", "))
@@ -125,7 +125,7 @@ fn with(template: &str, rows: &[Row], more: &str) -> String {
 
 const MATERIAL: &str = "material = [{ name = \"m\", kind = \"diffuse\", reflectance = 0.5 }]\nmesh = [{ shape = \"cube\", material = \"m\" }]\n";
 
-/// Templates of the tables that are not of a kind.
+/// Returns the templates of tables without kinds.
 fn templates() -> Vec<(&'static str, String)> {
     let of = |heading, text: &str| (heading, text.to_owned());
     vec![
@@ -148,12 +148,12 @@ fn templates() -> Vec<(&'static str, String)> {
     ]
 }
 
-/// Templates of every kind under a heading.
-fn kind_templates(heading: &str, list: &str) -> Vec<(String, String, Vec<Row>)> {
-    let template = |(kind, rows): (String, Vec<Row>)| {
+/// Returns the templates of every kind under a heading.
+fn kind_templates(heading: &str, list: &str) -> Vec<(String, String, Vec<KeyRow>)> {
+    let template = |(kind, rows): (String, Vec<KeyRow>)| {
         let name = if list == "material" { "name = \"m\", " } else { "" };
         let preset = if kind == "conductor" { "preset = \"Au\", " } else { "" };
-        // The sample of a text is the name of a material, too.
+        // The sample value of a text is also the name of a material.
         let other = match list {
             "material" => "{ name = \"a.png\", kind = \"mirror\" }, ",
             _ => "",
@@ -164,14 +164,14 @@ fn kind_templates(heading: &str, list: &str) -> Vec<(String, String, Vec<Row>)> 
     kinds(heading).into_iter().map(template).collect()
 }
 
-fn all_templates() -> Vec<(String, String, Vec<Row>)> {
+fn all_templates() -> Vec<(String, String, Vec<KeyRow>)> {
     let plain = templates().into_iter().map(|(heading, text)| (heading.to_owned(), text, table(heading)));
     let materials = kind_templates("`[[material]]`", "material");
     plain.chain(materials).chain(kind_templates("`[[light]]`", "light")).collect()
 }
 
-fn check_types<T: DeserializeOwned>(heading: &str, rows: &[Row]) {
-    let error = |row: &Row, value: &str| {
+fn check_types<T: DeserializeOwned>(heading: &str, rows: &[KeyRow]) {
+    let error = |row: &KeyRow, value: &str| {
         let parsed = toml::from_str::<T>(&format!("{} = {value}", row.key));
         parsed.err().map(|e| e.message().to_owned()).filter(|message| !message.contains("missing field"))
     };
@@ -210,10 +210,10 @@ fn the_page_lists_every_key_and_its_type() {
     }
 }
 
-/// Asserts that kinds of a list take just the keys that the page gives them.
+/// Asserts that each kind of a list accepts exactly the keys that the page gives it.
 fn check_kinds<T: DeserializeOwned>(heading: &str, list: &str) {
     let common = keys(&table(heading));
-    let all: Vec<(String, Vec<Row>)> = kinds(heading);
+    let all: Vec<(String, Vec<KeyRow>)> = kinds(heading);
     let described: BTreeSet<String> = all.iter().flat_map(|(_, rows)| keys(rows)).collect();
     assert_eq!(&described | &common, known::<T>(), "{heading}");
     let unknown = outcome(
@@ -271,15 +271,15 @@ fn colours_are_the_same_everywhere_and_pictures_only_where_the_page_says() {
                 }
                 _ => template.clone(),
             };
-            let others: Vec<Row> = rows.iter().filter(|other| other.key != row.key).cloned().collect();
+            let others: Vec<KeyRow> = rows.iter().filter(|other| other.key != row.key).cloned().collect();
             let of = |value: &str| outcome(&with(&template, &others, &format!("{} = {value}", row.key)));
             let grey = of("0.25").unwrap_or_else(|e| panic!("{name}: {e}"));
             for same in ["[0.25, 0.25, 0.25]", "{ colour = \"#ffffff\", scale = 0.25 }"] {
                 assert_eq!(of(same).as_ref(), Ok(&grey), "{name}: {} = {same}", row.key);
             }
             assert!(of("\"#ffff\"").unwrap_err().contains("#rrggbb"));
-            let picture = of("\"a.png\"");
-            assert_eq!(picture.is_ok(), row.kind == "colour or picture", "{name}: {} {picture:?}", row.key);
+            let image = of("\"a.png\"");
+            assert_eq!(image.is_ok(), row.kind == "colour or picture", "{name}: {} {image:?}", row.key);
         }
     }
 }

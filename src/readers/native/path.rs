@@ -1,15 +1,15 @@
 //! The curve of a camera path through its keys.
 //!
-//! Paper: Yuksel, Schaefer and Keyser, *Parameterization and Applications of Catmull-Rom Curves*, CAD 2011: eye, target
-//! and up vector follow a centripetal Catmull-Rom curve, which neither overshoots nor loops between keys. Steffen, *A
-//! Simple Method for Monotonic Interpolation in One Dimension*, A&A 1990: the curve's parameter by frame, where keys
-//! have frames, and the field of view by parameter.
+//! Papers: Yuksel, Schaefer and Keyser, *Parameterization and Applications of Catmull-Rom Curves*, CAD 2011. Eye,
+//! target and up vector follow a centripetal Catmull-Rom curve, which neither overshoots nor loops between keys.
+//! Steffen, *A Simple Method for Monotonic Interpolation in One Dimension*, A&A 1990. It gives the curve's parameter by
+//! frame if keys have frames, and the field of view by parameter.
 //!
-//! Keys without frames are passed at constant parameter speed, end keys included.
+//! The parameter of keys without frames advances at constant speed.
 
 use glam::DVec3;
 
-/// A key: camera at one moment.
+/// A key: the camera at one frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Key {
     pub origin: DVec3,
@@ -21,11 +21,11 @@ pub(super) struct Key {
 
 /// A smooth path through keys.
 pub(super) struct KeyedPath {
-    /// The keys, and one before and behind, extrapolated linearly.
+    /// Keys, with one extrapolated linearly at each end.
     points: Vec<Key>,
-    /// Parameters of all points.
+    /// Parameter of each point.
     knots: Vec<f64>,
-    /// Frames of the keys; empty if they have none.
+    /// Frame of each key; empty if keys have no frames.
     at: Vec<f64>,
     /// Number of frames.
     frames: usize,
@@ -48,7 +48,8 @@ impl Key {
 }
 
 impl KeyedPath {
-    /// The path of so many `frames` through `keys`, at least one, at the frames `at` in ascending order, if not empty.
+    /// Returns the path of `frames` frames through at least one key. `at` are the frames of the keys in ascending
+    /// order, or empty.
     pub fn new(keys: Vec<Key>, at: Vec<usize>, frames: usize) -> KeyedPath {
         let at = at.into_iter().map(|frame| frame as f64).collect();
         let [first, .., last] = keys[..] else {
@@ -57,7 +58,7 @@ impl KeyedPath {
         let before = first.blend(keys[1], -1.0);
         let after = last.blend(keys[keys.len() - 2], -1.0);
         let points: Vec<Key> = [before].into_iter().chain(keys).chain([after]).collect();
-        // Centripetal knots; coincident keys are separated by a tiny distance.
+        // Centripetal knots. A small distance separates coincident keys.
         let mut knots = vec![0.0];
         for pair in points.windows(2) {
             knots.push(knots[knots.len() - 1] + pair[0].distance(pair[1]).sqrt().max(1e-9));
@@ -65,7 +66,8 @@ impl KeyedPath {
         KeyedPath { points, knots, at, frames }
     }
 
-    /// The camera at a frame, counted from 1; that of the first or last key before and behind them.
+    /// Returns the camera at a frame, counted from 1. Before the first key and after the last one the camera stands
+    /// still.
     pub fn at(&self, frame: usize) -> Key {
         let [_, own @ .., _] = &self.knots[..] else { return self.points[0] };
         let u = match &self.at[..] {
@@ -91,7 +93,8 @@ fn barry_goldman(p: &[Key], k: &[f64], u: f64) -> Key {
     mix(b[0], b[1], k[1], k[2])
 }
 
-/// The smooth function through values `y` at ascending `x` that rises and falls only as they do; constant beyond them.
+/// Evaluates a smooth function through values `y` at ascending `x` that is monotone where the values are; it is
+/// constant outside.
 fn monotone(x: &[f64], y: impl Fn(usize) -> f64, at: f64) -> f64 {
     let last = x.len() - 1;
     if last == 0 || at <= x[0] {

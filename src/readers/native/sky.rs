@@ -1,8 +1,10 @@
-//! Sun and sky of the native format: where y is up, north is -z and east x; where z is, north is y.
+//! Sun and sky of the native format.
+//!
+//! If y is up, north is -z and east is x. If z is up, north is y.
 
-use super::Builder;
+use super::builder::SceneBuilder;
 use super::text::SkyText;
-use crate::error::{Place, SceneError};
+use crate::error::{Location, SceneError};
 use crate::plan::EnvironmentPlan;
 use crate::sky::{Moment, SkyPlan, sun_position};
 use base::math::unit;
@@ -10,7 +12,7 @@ use glam::{DQuat, DVec3};
 use toml::Spanned;
 use toml::value::{Datetime, Offset};
 
-impl Builder<'_> {
+impl SceneBuilder<'_> {
     pub(super) fn sky(&mut self, text: &Spanned<SkyText>) -> Result<(), SceneError> {
         let place = self.file.place(text.span());
         let text = text.get_ref();
@@ -49,7 +51,7 @@ impl Builder<'_> {
     }
 }
 
-fn moment(date: &Datetime, place: &Place) -> Result<Moment, SceneError> {
+fn moment(date: &Datetime, place: &Location) -> Result<Moment, SceneError> {
     let (Some(day), Some(time), Some(offset)) = (date.date, date.time, date.offset) else {
         let remedy = "write day, time and time zone, as 2024-06-21T12:30:00+02:00";
         return Err(place.wrong(format!("the date {date} is no moment"), remedy));

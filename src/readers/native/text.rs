@@ -1,5 +1,6 @@
-//! The native format as text: the keys of each table. Any other key is an error, so that a misspelt one
-//! cannot pass unnoticed.
+//! Keys of each table of the native format.
+//!
+//! Any other key is an error, so that misspelt keys are reported.
 
 use glam::DVec3;
 use serde::Deserialize;
@@ -12,7 +13,7 @@ pub(super) struct SceneText {
     pub generator: Option<Spanned<String>>,
     pub max_depth: Option<Spanned<u32>>,
     pub hide_emitters: Option<bool>,
-    pub resolution: Option<Spanned<Row<u32, 2>>>,
+    pub resolution: Option<Spanned<FixedArray<u32, 2>>>,
     pub camera: Option<Spanned<CameraText>>,
     #[serde(default)]
     pub material: Vec<Spanned<MaterialText>>,
@@ -24,7 +25,7 @@ pub(super) struct SceneText {
     pub sky: Option<Spanned<SkyText>>,
 }
 
-/// A number that `f32` holds.
+/// A number in the range of f32.
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(try_from = "f64")]
 pub(super) struct Number(pub f64);
@@ -40,22 +41,22 @@ impl TryFrom<f64> for Number {
     }
 }
 
-/// Just so many values: the parser's own arrays would leave out those that follow.
+/// An array of exactly `N` values. The parser's own arrays ignore surplus values.
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(try_from = "Vec<T>")]
 #[serde(bound(deserialize = "T: Deserialize<'de>"))]
-pub(super) struct Row<T, const N: usize>(pub [T; N]);
+pub(super) struct FixedArray<T, const N: usize>(pub [T; N]);
 
-impl<T, const N: usize> TryFrom<Vec<T>> for Row<T, N> {
+impl<T, const N: usize> TryFrom<Vec<T>> for FixedArray<T, N> {
     type Error = String;
 
-    fn try_from(values: Vec<T>) -> Result<Row<T, N>, String> {
-        values.try_into().map(Row).map_err(|_| format!("expected an array of length {N}"))
+    fn try_from(values: Vec<T>) -> Result<FixedArray<T, N>, String> {
+        values.try_into().map(FixedArray).map_err(|_| format!("expected an array of length {N}"))
     }
 }
 
-/// A row of numbers.
-pub(super) type Numbers<const N: usize> = Row<Number, N>;
+/// An array of numbers.
+pub(super) type NumberArray<const N: usize> = FixedArray<Number, N>;
 
 impl From<Number> for f64 {
     fn from(number: Number) -> f64 {
@@ -63,14 +64,14 @@ impl From<Number> for f64 {
     }
 }
 
-impl From<Numbers<2>> for [f64; 2] {
-    fn from(numbers: Numbers<2>) -> [f64; 2] {
+impl From<NumberArray<2>> for [f64; 2] {
+    fn from(numbers: NumberArray<2>) -> [f64; 2] {
         numbers.0.map(f64::from)
     }
 }
 
-impl From<Numbers<3>> for DVec3 {
-    fn from(numbers: Numbers<3>) -> DVec3 {
+impl From<NumberArray<3>> for DVec3 {
+    fn from(numbers: NumberArray<3>) -> DVec3 {
         DVec3::from(numbers.0.map(f64::from))
     }
 }
@@ -78,9 +79,9 @@ impl From<Numbers<3>> for DVec3 {
 #[derive(Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct CameraText {
-    pub origin: Option<Numbers<3>>,
-    pub target: Option<Numbers<3>>,
-    pub up: Option<Numbers<3>>,
+    pub origin: Option<NumberArray<3>>,
+    pub target: Option<NumberArray<3>>,
+    pub up: Option<NumberArray<3>>,
     pub fov: Option<Number>,
     pub fov_axis: Option<Spanned<String>>,
     pub near: Option<f64>,
@@ -103,13 +104,13 @@ pub(super) struct PathText {
 #[serde(deny_unknown_fields)]
 pub(super) struct KeyText {
     pub frame: Option<usize>,
-    pub origin: Numbers<3>,
-    pub target: Numbers<3>,
-    pub up: Option<Numbers<3>>,
+    pub origin: NumberArray<3>,
+    pub target: NumberArray<3>,
+    pub up: Option<NumberArray<3>>,
     pub fov: Option<Number>,
 }
 
-/// All keys of all kinds of material; `material` checks which kind allows which.
+/// Keys of all kinds of material; `material` checks which kind allows which.
 #[derive(Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct MaterialText {
@@ -148,7 +149,7 @@ pub(super) struct MaterialText {
     pub base: Option<String>,
 }
 
-/// A colour: the same in every place that takes one.
+/// A colour, in any of its forms.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(
     untagged,
@@ -156,8 +157,8 @@ pub(super) struct MaterialText {
 )]
 pub(super) enum ColourText {
     Grey(Number),
-    Rgb(Numbers<3>),
-    /// Hexadecimal after `#`, else the name of a picture.
+    Rgb(NumberArray<3>),
+    /// Hexadecimal digits after `#`, or the name of an image.
     Named(String),
     /// A colour times a factor.
     Scaled {
@@ -167,7 +168,7 @@ pub(super) enum ColourText {
     Texture(TextureText),
 }
 
-/// A number, or the name of a picture with or without how to read it.
+/// A number, or an image with or without options.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(
     untagged,
@@ -176,15 +177,15 @@ pub(super) enum ColourText {
 )]
 pub(super) enum NumberText {
     Number(Number),
-    Picture(String),
+    File(String),
     Texture(TextureText),
 }
 
-/// The name of a picture, with or without how to read it.
+/// An image with or without options.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(untagged, expecting = "expected a picture's name or { file = \"...\" }")]
 pub(super) enum MapText {
-    Picture(String),
+    File(String),
     Texture(TextureText),
 }
 
@@ -199,11 +200,11 @@ pub(super) struct TextureText {
     /// Factor on every texel.
     pub scale: Option<Number>,
     /// Repetitions along u and v.
-    pub tiles: Option<Numbers<2>>,
+    pub tiles: Option<NumberArray<2>>,
 }
 
 impl TextureText {
-    /// Factor on every texel.
+    /// Returns the factor on every texel.
     pub fn scale(&self) -> f64 {
         self.scale.map_or(1.0, f64::from)
     }
@@ -232,13 +233,13 @@ pub(super) struct MeshText {
     pub shape: Option<String>,
     /// Index of the mesh in a `.serialized` file.
     pub index: Option<usize>,
-    /// Groups of an OBJ file, or nodes of a glTF model, that are asked for.
+    /// Groups of an OBJ file, or nodes of a glTF model, to read.
     pub group: Option<NamesText>,
-    /// Those that are left out.
+    /// Groups or nodes to leave out.
     pub except: Option<NamesText>,
-    /// Units of a glTF model's lights for one here.
+    /// Units of a glTF model's lights per unit of the renderer.
     pub lumens_per_watt: Option<Number>,
-    /// Frames a second of a glTF model's animation.
+    /// Frames per second of a glTF model's animation.
     pub fps: Option<Number>,
     pub material: Option<Spanned<String>>,
     #[serde(default)]
@@ -263,21 +264,21 @@ pub(super) enum NamesText {
 pub(super) struct StepText {
     pub scale: Option<ScaleText>,
     pub rotate: Option<RotateText>,
-    pub translate: Option<Numbers<3>>,
-    pub matrix: Option<Numbers<16>>,
+    pub translate: Option<NumberArray<3>>,
+    pub matrix: Option<NumberArray<16>>,
 }
 
 #[derive(Debug, Deserialize)]
 #[serde(untagged, expecting = "expected a number or [x, y, z]")]
 pub(super) enum ScaleText {
     Uniform(Number),
-    Axes(Numbers<3>),
+    Axes(NumberArray<3>),
 }
 
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct RotateText {
-    pub axis: Numbers<3>,
+    pub axis: NumberArray<3>,
     pub angle: Number,
 }
 
@@ -285,12 +286,12 @@ pub(super) struct RotateText {
 #[serde(deny_unknown_fields)]
 pub(super) struct LightText {
     pub kind: String,
-    pub position: Option<Numbers<3>>,
-    pub target: Option<Numbers<3>>,
+    pub position: Option<NumberArray<3>>,
+    pub target: Option<NumberArray<3>>,
     pub intensity: Option<ColourText>,
     pub inner_angle: Option<Number>,
     pub outer_angle: Option<Number>,
-    pub direction: Option<Numbers<3>>,
+    pub direction: Option<NumberArray<3>>,
     pub irradiance: Option<ColourText>,
     pub angle: Option<Number>,
 }
@@ -307,17 +308,17 @@ pub(super) struct EnvironmentText {
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct SkyText {
-    pub up: Option<Numbers<3>>,
-    pub sun_direction: Option<Numbers<3>>,
+    pub up: Option<NumberArray<3>>,
+    pub sun_direction: Option<NumberArray<3>>,
     pub date: Option<toml::value::Datetime>,
-    /// Latitude to the north and longitude to the east, degrees.
-    pub place: Option<Numbers<2>>,
+    /// Latitude (north) and longitude (east), in degrees.
+    pub place: Option<NumberArray<2>>,
     pub turbidity: Option<Number>,
     pub albedo: Option<ColourText>,
     pub scale: Option<Number>,
     pub sun_scale: Option<Number>,
-    /// Diameter of the sun, degrees.
+    /// Diameter of the sun, in degrees.
     pub sun_angle: Option<Number>,
-    /// Degrees from north of the scene to that of the place, counter-clockwise.
+    /// Angle from north of the scene to north of the place, counter-clockwise, in degrees.
     pub rotate_y: Option<Number>,
 }

@@ -1,22 +1,25 @@
-//! Radiance of a clear sky and of the sun, by height of the sun, turbidity of the air and albedo of the ground.
+//! Radiance of a clear sky and of the sun.
+//!
+//! Parameters are the sun's elevation, the turbidity of the air, and the albedo of the ground.
 //!
 //! Papers: L. Hosek & A. Wilkie, *An Analytic Model for Full Spectral Sky-Dome Radiance*, SIGGRAPH 2012 (Eq. 8);
 //! *Adding a Solar-Radiance Function to the Hosek-Wilkie Skylight Model*, IEEE CG&A 33(3), 2013. The coefficients are
 //! the authors' for linear Rec. 709 (`hosek_wilkie.bin`, see LICENSE there), in the units of Mitsuba 3.
 //!
-//! Deviations: the sun shines evenly, with the mean over its darkened limb. Mitsuba 3.9.1 does so too, but reads it
-//! from a table of 30 heights, between which it is linear: up to 2 % off above 7°, far off in blue below. Channels
-//! that are negative, because colours of a low sun lie outside Rec. 709, are 0.
+//! Deviations:
+//! - The sun is even, with its mean radiance over the darkened limb. Mitsuba 3.9.1 interpolates that mean linearly from
+//!   a table of 30 elevations, which is up to 2 % off above 7°.
+//! - Negative channels are 0. They occur because colours of a low sun lie outside Rec. 709.
 //!
 //! Units: angles in radians, radiance in W/(sr m²).
 
 use glam::DVec3;
 use std::f64::consts::{FRAC_PI_2, PI};
 
-/// Least and greatest turbidity that the model knows.
+/// Minimum and maximum turbidity of the model.
 pub const TURBIDITIES: [f64; 2] = [1.0, 10.0];
 
-/// Diameter of the sun, degrees.
+/// Diameter of the sun, in degrees.
 pub const SUN_ANGLE: f64 = 0.5358;
 
 static TABLES: &[u8] = include_bytes!("hosek_wilkie.bin");
@@ -26,25 +29,27 @@ const CONTROL_POINTS: usize = 6;
 const ALBEDOS: usize = 2;
 const SUN_SEGMENTS: usize = 45;
 const SUN_POWERS: usize = 4;
-/// First entries of the tables of radiance and of the sun.
+/// First entry of the table of radiance.
 const RADIANCE: usize = 10 * ALBEDOS * CONTROL_POINTS * CHANNELS * PARAMETERS;
+/// First entry of the table of the sun.
 const SUN: usize = RADIANCE + 10 * ALBEDOS * CONTROL_POINTS * CHANNELS;
 
-/// Factor from the model's units to luminous watts, and that of the sun's to the sky's, as in Mitsuba 3.
+/// Factor from the model's units to luminous watts, as in Mitsuba 3.
 const PER_LUMEN: f64 = 1.0 / 106.750_259_4;
+/// Factor from the sun's units to the sky's, as in Mitsuba 3.
 const SUN_UNITS: f64 = 467.069_280_386;
 
-/// The sky at one height of the sun.
+/// A sky for one elevation of the sun.
 #[derive(Clone, Debug)]
 pub struct ClearSky {
-    /// Parameters A to I of Eq. 8, by channel.
+    /// Parameters A to I of Eq. 8, per channel.
     parameters: [[f64; PARAMETERS]; CHANNELS],
-    /// Mean radiance.
+    /// Mean radiance of the sky.
     radiance: DVec3,
 }
 
 impl ClearSky {
-    /// The sky of a sun `elevation` above the horizon, for a turbidity in [`TURBIDITIES`].
+    /// Returns the sky for a sun at `elevation` above the horizon and a turbidity in [`TURBIDITIES`].
     pub fn new(turbidity: f64, albedo: DVec3, elevation: f64) -> ClearSky {
         let x = (elevation.clamp(0.0, FRAC_PI_2) / FRAC_PI_2).cbrt();
         let bezier: [f64; CONTROL_POINTS] = std::array::from_fn(|k| {
@@ -73,7 +78,8 @@ impl ClearSky {
         }
     }
 
-    /// Radiance from a direction above the horizon of cosine `cos_theta` to the zenith and at `gamma` from the sun.
+    /// Returns the radiance from a direction above the horizon: `cos_theta` is the cosine to the zenith, `gamma` the
+    /// angle to the sun.
     pub fn radiance(&self, cos_theta: f64, gamma: f64) -> DVec3 {
         let cos_gamma = gamma.cos();
         let channel = |[a, b, c, d, e, f, g, h, i]: [f64; PARAMETERS]| {
@@ -87,7 +93,7 @@ impl ClearSky {
     }
 }
 
-/// Mean radiance over the disc of the sun, [`SUN_ANGLE`] wide, at `elevation`.
+/// Returns the mean radiance over the disc of the sun, [`SUN_ANGLE`] wide, at `elevation`.
 pub fn sun_radiance(turbidity: f64, elevation: f64) -> DVec3 {
     let elevation = elevation.clamp(0.0, FRAC_PI_2);
     let at = (elevation / FRAC_PI_2).cbrt() * SUN_SEGMENTS as f64;
@@ -103,7 +109,7 @@ pub fn sun_radiance(turbidity: f64, elevation: f64) -> DVec3 {
     (DVec3::from([0, 1, 2].map(channel)) * (PER_LUMEN * SUN_UNITS)).max(DVec3::ZERO)
 }
 
-/// Levels of turbidity around one, and their weights.
+/// Returns the two levels of turbidity around one, and their weights.
 fn turbidity_weights(turbidity: f64) -> [(usize, f64); 2] {
     let at = turbidity.clamp(TURBIDITIES[0], TURBIDITIES[1]) - 1.0;
     let level = (at as usize).min(8);
@@ -111,7 +117,7 @@ fn turbidity_weights(turbidity: f64) -> [(usize, f64); 2] {
     [(level, 1.0 - f), (level + 1, f)]
 }
 
-/// Entry of the tables.
+/// Returns an entry of the tables.
 fn table(index: usize) -> f64 {
     let bytes = TABLES.get(4 * index..4 * index + 4).and_then(|bytes| bytes.try_into().ok());
     f64::from(f32::from_le_bytes(bytes.unwrap_or_default()))

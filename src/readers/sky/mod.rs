@@ -1,12 +1,12 @@
-//! Sun and sky, as both readers describe them: the sky becomes an environment map, the sun a distant disc.
+//! Sun and sky of all formats: the sky becomes an environment map, the sun a distant disc.
 //!
-//! Deviations: the map is bilinear between directions .35° apart, so the sky fades over that angle below the horizon,
+//! Deviations: the map is bilinear between directions 0.35° apart. So the sky fades over that angle below the horizon,
 //! where it is black.
 
 mod hosek_wilkie;
 mod sun_position;
 
-use super::error::{Log, Place, SceneError};
+use super::error::{Location, Log, SceneError};
 use base::math::Rgb;
 use glam::{DMat3, DVec3};
 use hosek_wilkie::{ClearSky, SUN_ANGLE, TURBIDITIES, sun_radiance};
@@ -16,11 +16,12 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 pub(crate) use sun_position::{Moment, sun_position};
 
-/// Size of the map; an odd number of rows, so that one lies on the horizon.
+/// Width of the map.
 const WIDTH: usize = 1024;
+/// Height of the map; odd, so that one row lies on the horizon.
 const HEIGHT: usize = 513;
 
-/// A clear sky with its sun.
+/// Description of a clear sky with its sun.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct SkyPlan {
     /// Unit world vector to the zenith.
@@ -34,19 +35,19 @@ pub(crate) struct SkyPlan {
     pub sky_scale: f64,
     /// Factor on the sun.
     pub sun_scale: f64,
-    /// Diameter of the sun, degrees; its irradiance does not depend on it.
+    /// Diameter of the sun in degrees; the irradiance does not depend on it.
     pub sun_angle: f64,
 }
 
 impl SkyPlan {
-    /// A sky with the defaults of Mitsuba.
+    /// Returns a sky with the defaults of Mitsuba.
     pub fn new(up: DVec3, towards_sun: DVec3) -> SkyPlan {
         let (turbidity, albedo) = (3.0, Rgb::splat(0.3));
         SkyPlan { up, towards_sun, turbidity, albedo, sky_scale: 1.0, sun_scale: 1.0, sun_angle: SUN_ANGLE }
     }
 
-    /// Checks the ranges of the values, and warns of a sun that has set.
-    pub fn check(&self, place: &Place, log: &mut Log) -> Result<(), SceneError> {
+    /// Checks the ranges of the values, and warns of a sun below the horizon.
+    pub fn check(&self, place: &Location, log: &mut Log) -> Result<(), SceneError> {
         let [low, high] = TURBIDITIES;
         if !(low..=high).contains(&self.turbidity) {
             return Err(place.wrong(format!("the turbidity is {}", self.turbidity), "give 1 to 10"));
@@ -71,7 +72,7 @@ impl SkyPlan {
         FRAC_PI_2 - angle_between(self.up, self.towards_sun)
     }
 
-    /// The sky as a map; `None` if it is black.
+    /// Returns the sky as a map; `None` if black.
     pub fn map(&self) -> Option<EnvironmentMap> {
         if self.sky_scale == 0.0 || self.elevation() < 0.0 {
             return None;
@@ -95,7 +96,7 @@ impl SkyPlan {
         Some(EnvironmentMap { width: WIDTH, height: HEIGHT, radiance, to_local })
     }
 
-    /// The sun; `None` if it gives no light.
+    /// Returns the sun; `None` if black.
     pub fn sun(&self) -> Option<DistantDisc> {
         if self.sun_scale == 0.0 || self.elevation() < 0.0 {
             return None;
@@ -110,7 +111,7 @@ impl SkyPlan {
     }
 }
 
-/// Angle between unit vectors, exact for small ones too.
+/// Returns the angle between unit vectors, precise for small angles too.
 fn angle_between(a: DVec3, b: DVec3) -> f64 {
     2.0 * (a - b).length().atan2((a + b).length())
 }

@@ -1,14 +1,14 @@
-//! Position of the sun in the sky by date and place.
+//! Position of the sun by date and place.
 //!
-//! Paper: M. Blanco-Muriel et al., *Computing the Solar Vector*, Solar Energy 70(5), 2001: to half a minute of arc,
-//! from 1999 to 2015.
+//! Paper: M. Blanco-Muriel et al., *Computing the Solar Vector*, Solar Energy 70(5), 2001. Its precision is 0.5 arc
+//! minutes from 1999 to 2015.
 
 use std::f64::consts::TAU;
 
-/// Mean radius of the Earth over its distance from the sun, for the parallax.
+/// Radius of the Earth over its distance from the sun, for the parallax.
 const PARALLAX: f64 = 6371.01 / 149_597_890.0;
 
-/// A moment, as clocks show it `timezone` hours ahead of Universal Time.
+/// A local time, `timezone` hours ahead of Universal Time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Moment {
     pub year: i64,
@@ -19,15 +19,16 @@ pub(crate) struct Moment {
     pub timezone: f64,
 }
 
-/// The defaults of Mitsuba.
+/// The default date of Mitsuba.
 impl Default for Moment {
     fn default() -> Moment {
         Moment { year: 2010, month: 7, day: 10, hours: 15.0, timezone: 9.0 }
     }
 }
 
-/// Angle from the zenith, and azimuth from the north over the east, radians, at a place given by latitude (to the
-/// north) and longitude (to the east), degrees.
+/// Returns the angle from the zenith, and the azimuth from north towards east, in radians.
+///
+/// The place is given by latitude (north) and longitude (east), in degrees.
 pub(crate) fn sun_position(moment: &Moment, [latitude, longitude]: [f64; 2]) -> [f64; 2] {
     let hours = moment.hours - moment.timezone;
     let days = julian_day(moment) as f64 - 0.5 + hours / 24.0 - 2_451_545.0;
@@ -52,7 +53,7 @@ pub(crate) fn sun_position(moment: &Moment, [latitude, longitude]: [f64; 2]) -> 
     [zenith + PARALLAX * zenith.sin(), azimuth]
 }
 
-/// Julian day that begins at noon of the date.
+/// Returns the Julian day that begins at noon of the date.
 fn julian_day(Moment { year, month, day, .. }: &Moment) -> i64 {
     let before_march = (month - 14) / 12;
     (1461 * (year + 4800 + before_march)) / 4 + (367 * (month - 2 - 12 * before_march)) / 12

@@ -3,7 +3,7 @@
 //! ```no_run
 //! # use lightsplat::{film::write_exr, progress::Control, session::{Goal, Session}, view::{Framing, View}};
 //! # use std::path::Path;
-//! let session = Session::open(Path::new("scenes/cornell.toml"), &Default::default())?;
+//! let session = Session::open(Path::new("scenes/cornell.toml"), &Default::default())?.session;
 //! let view = View::new(&session.cameras, &Framing::default())?;
 //! let frame = session.frame(&view, &Goal::default(), &Control::new())?;
 //! write_exr(Path::new("cornell.exr"), &frame.film)?;
@@ -30,9 +30,9 @@ pub use transport::eye::{Feature, Features, UnknownFeature};
 
 use crate::method::LightStore;
 use base::stats::{Stage, Stats};
-use embree::{BuildQuality, EmbreeError};
-use readers::{LoadOptions, Loaded, SceneError, load};
-use scene::Cameras;
+use embree::EmbreeError;
+use readers::{LoadOptions, Loaded, SanitizeReport, SceneError, Warning, load};
+use scene::{Cameras, Scene};
 use std::path::{Path, PathBuf};
 use world::World;
 
@@ -42,14 +42,22 @@ pub struct Session {
     pub world: World,
     /// The cameras of the scene's file.
     pub cameras: Cameras,
-    /// Hash over the bytes of all source files.
+    /// Hash over the bytes of all source files; 0 for a scene made in memory.
     pub hash: u64,
     /// Times of loading and building.
     pub stats: Stats,
     /// Virtual lights of the last frame.
     lights: LightStore,
-    /// The scene's file.
-    path: PathBuf,
+}
+
+/// A session, and reports of reading its scene.
+pub struct Opened {
+    /// The session.
+    pub session: Session,
+    /// Warnings about features that were replaced, in the order of the description.
+    pub warnings: Vec<Warning>,
+    /// Report of repairs.
+    pub repairs: SanitizeReport,
 }
 
 /// Reason why a session cannot be opened.
@@ -69,27 +77,30 @@ pub enum OpenError {
 }
 
 impl Session {
-    /// Reads the scene at `path` and makes it ready on the threads of the current pool.
-    pub fn open(path: &Path, options: &LoadOptions) -> Result<Session, OpenError> {
+    /// Reads the scene at `path` and prepares it for rendering, on the threads of the current pool.
+    ///
+    /// # Errors
+    /// If the scene cannot be read, or its acceleration structure cannot be built.
+    pub fn open(path: &Path, options: &LoadOptions) -> Result<Opened, OpenError> {
         let mut stats = Stats::new();
-        let loaded = stats.time(Stage::Load, || load(path, options))?;
-        Session::of(loaded, path, stats)
+        let Loaded { scene, cameras, warnings, repairs, hash } =
+            stats.time(Stage::Load, || load(path, options))?;
+        let session = Session::build(scene, cameras, stats)
+            .map_err(|source| OpenError::Build { path: path.to_owned(), source })?;
+        Ok(Opened { session: Session { hash, ..session }, warnings, repairs })
     }
 
-    /// Prepares a loaded scene on the threads of the current pool; `stats` holds the time of loading it.
-    pub fn of(loaded: Loaded, path: &Path, mut stats: Stats) -> Result<Session, OpenError> {
-        let Loaded { scene, cameras, hash, .. } = loaded;
-        let path = path.to_owned();
-        match stats.time(Stage::Build, || World::new(scene, rayon::current_num_threads())) {
-            Ok(world) => Ok(Session { world, cameras, hash, stats, lights: LightStore::default(), path }),
-            Err(source) => Err(OpenError::Build { path, source }),
-        }
+    /// Prepares a scene made in memory for rendering, on the threads of the current pool.
+    ///
+    /// # Errors
+    /// If the acceleration structure cannot be built.
+    pub fn of(scene: Scene, cameras: Cameras) -> Result<Session, EmbreeError> {
+        Session::build(scene, cameras, Stats::new())
     }
 
-    /// Builds the acceleration structure anew with another quality.
-    pub fn rebuild(&mut self, quality: BuildQuality) -> Result<(), OpenError> {
-        let rebuilt = self.world.rebuild(quality);
-        rebuilt.map_err(|source| OpenError::Build { path: self.path.clone(), source })
+    fn build(scene: Scene, cameras: Cameras, mut stats: Stats) -> Result<Session, EmbreeError> {
+        let world = stats.time(Stage::Build, || World::new(scene, rayon::current_num_threads()))?;
+        Ok(Session { world, cameras, hash: 0, stats, lights: LightStore::default() })
     }
 }
 
@@ -104,7 +115,7 @@ mod tests {
     #[test]
     fn frames_of_a_session_share_lights_and_each_is_as_if_alone() {
         let scene = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/cornell.toml");
-        let open = || Session::open(&scene, &LoadOptions::default()).unwrap();
+        let open = || Session::open(&scene, &LoadOptions::default()).unwrap().session;
         let mut settings = reconstruction::Settings { spp: 1, ..Default::default() };
         settings.light.indirect = 2000;
         let goal = |settings| Goal { method: Method::Reconstruction(settings), ..Goal::default() };

@@ -14,7 +14,7 @@ use lightsplat::film::{Film, Image, Layer, write_exr};
 use lightsplat::math::Rgb;
 use lightsplat::method::Method;
 use lightsplat::progress::Control;
-use lightsplat::readers::{LoadOptions, load};
+use lightsplat::readers::LoadOptions;
 use lightsplat::session::{Goal, Session};
 use lightsplat::view::{Framing, View};
 use lightsplat::walk::{RetentionLimits, Walk};
@@ -203,8 +203,7 @@ fn pictures() -> Vec<Seed> {
 /// Records of a frame of a walk.
 fn records() -> Vec<u8> {
     let path = corpus("valid").join("everything.toml");
-    let session =
-        Session::of(load(&path, &LoadOptions::default()).unwrap(), &path, Default::default()).unwrap();
+    let session = Session::open(&path, &LoadOptions::default()).unwrap().session;
     let mut method = Method::named("cache").unwrap();
     for (key, value) in [("spp", "1"), ("vpls", "64"), ("least_cell", "16")] {
         method.set(key, value).unwrap();

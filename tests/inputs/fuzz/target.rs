@@ -7,7 +7,7 @@ use lightsplat::film::{ExrFile, Pixels};
 use lightsplat::method::Method;
 use lightsplat::progress::Control;
 use lightsplat::readers::{LoadOptions, Loaded, load};
-use lightsplat::session::{FrameError, Goal, OpenError, Remark, Session};
+use lightsplat::session::{FrameError, Goal, Remark, Session};
 use lightsplat::view::{Framing, View};
 use lightsplat::walk::{RetentionLimits, Walk};
 use std::fs;
@@ -67,8 +67,8 @@ impl Workplace {
         }
         scenes().into_iter().for_each(|(name, text)| fs::write(folder.join(name), text).unwrap());
         let path = folder.join("void.toml");
-        let loaded = load(&path, &LoadOptions::default()).unwrap();
-        Workplace { folder, session: Session::of(loaded, &path, Default::default()).unwrap() }
+        let session = Session::open(&path, &LoadOptions::default()).unwrap().session;
+        Workplace { folder, session }
     }
 
     /// File of the case at hand.
@@ -128,11 +128,7 @@ impl Workplace {
             return;
         }
         let frames = loaded.cameras.path.len();
-        let session = match Session::of(loaded, &self.folder, Default::default()) {
-            Ok(session) => session,
-            Err(OpenError::Build { .. }) => return,
-            Err(OpenError::Scene(error)) => panic!("{error}"),
-        };
+        let Ok(session) = Session::of(loaded.scene, loaded.cameras) else { return };
         let mut method = *random.pick(&Method::all().collect::<Vec<_>>());
         for (key, value) in [
             ("spp", "1"),

@@ -1,9 +1,8 @@
-//! Errors of a picture against a reference of the same scene.
+//! Errors of an image against a reference of one scene.
 //!
-//! Relative error is measured on linear radiance, PSNR and FLIP on displayed values: radiance exposed so that
-//! the *reference's* 90th percentile of luminance is 0.8, clipped at 1, sRGB. A reference has noise of its
-//! own; where its variance is known, [`Comparison::reference_rel_mse`] is the part of the relative error due
-//! to it.
+//! Relative error is measured on linear radiance, PSNR and FLIP on displayed values. Display means: exposed so that the
+//! *reference's* 90th percentile of luminance is 0.8, clipped at 1, sRGB. A reference has noise, too. If its variance
+//! is known, [`Comparison::reference_rel_mse`] is the part of the relative error due to it.
 
 mod flip;
 mod pixelwise;
@@ -23,9 +22,9 @@ pub use ztest::{BLOCK, SHARE_REQUIRED, SIGNIFICANCE, ZTest, z_test, z_test_block
 pub struct Comparison {
     /// Mean over pixels and channels of `(t - r)² / (r² + 0.01 m²)`, m the reference's mean.
     pub rel_mse: f64,
-    /// The same without the worst 0.1 % of pixels, so that single outliers do not dominate.
+    /// Value of `rel_mse` without the worst 0.1 % of pixels, so that outliers do not dominate.
     pub rel_mse_trimmed: f64,
-    /// Part of `rel_mse` that is due to the reference's own noise, where its variance is known.
+    /// Part of `rel_mse` due to the reference's noise, if its variance is known.
     pub reference_rel_mse: Option<f64>,
     /// Root mean square difference of radiance.
     pub rmse: f64,
@@ -33,15 +32,15 @@ pub struct Comparison {
     pub psnr: Option<f64>,
     /// Mean FLIP of the displayed images, 0 (identical) to 1.
     pub flip: f64,
-    /// Mean of the image over mean of the reference, per channel; `None` where the reference is black.
+    /// Mean of the image over mean of the reference, per channel; `None` if the reference is black.
     pub mean_ratio: [Option<f64>; 3],
-    /// Standard error of `mean_ratio`, where both variances are known.
+    /// Standard error of `mean_ratio`, if both variances are known.
     pub mean_ratio_std_error: Option<[Option<f64>; 3]>,
-    /// Test whether the differences agree with the two variances, where both are known.
+    /// Test whether the differences agree with the variances, if both are known.
     pub z_test: Option<ZTest>,
-    /// The same over means of 8x8 pixels, for pictures of few samples.
+    /// Test of means over 8x8 pixels, for images of few samples.
     pub z_test_blocks: Option<ZTest>,
-    /// The factor on radiance before display.
+    /// Factor on radiance before display.
     pub exposure: f64,
 }
 
@@ -55,6 +54,9 @@ pub struct Variances<'a> {
 }
 
 /// Compares `test` with `reference`; every channel of all images must be finite.
+///
+/// # Errors
+/// If the sizes of images differ.
 pub fn compare(test: &Image, reference: &Image, variances: Variances) -> Result<Comparison, ImageError> {
     same_size("the two pictures differ in size", test, reference)?;
     for variance in [variances.test, variances.reference].into_iter().flatten() {

@@ -1,4 +1,4 @@
-//! The measures against values worked out by hand, and against properties that hold for any images.
+//! Tests of the measures against values worked out by hand, and of properties that hold for any images.
 
 use super::*;
 use crate::math::Rgb;
@@ -13,7 +13,7 @@ fn grey(values: &[f32]) -> Image {
     image(values.len() as u32, 1, |x, _| Rgb::splat(values[x as usize]))
 }
 
-/// Independent standard normal variables from a fixed stream (splitmix64 and Box-Muller).
+/// Returns independent standard normal variables from a fixed stream (splitmix64 and Box-Muller).
 fn normals(seed: u64) -> impl FnMut() -> f32 {
     let mut state = seed;
     let mut uniform = move || {
@@ -56,7 +56,7 @@ fn psnr_by_hand() {
     let expected = -10.0 * (0.274001f64.powi(2) / 2.0).log10();
     assert!((psnr(&test, &reference, 1.0).unwrap() - expected).abs() < 1e-3);
     assert_eq!(psnr(&reference, &reference, 1.0), None);
-    // Values clipped on both sides look the same on the screen.
+    // Values clipped on both sides are displayed alike.
     assert_eq!(psnr(&grey(&[2.0]), &grey(&[9.0]), 1.0), None);
 }
 
@@ -98,7 +98,7 @@ fn flip_grows_with_the_difference_and_knows_the_extremes() {
     let (small, large) =
         (mean(&grey_field(0.5), &grey_field(0.52)), mean(&grey_field(0.5), &grey_field(0.9)));
     assert!(0.0 < small && small < large && large < 1.0, "{small} {large}");
-    // Black against white is 0.9694 in the authors' evaluator; only yellow against blue or so would be 1.
+    // Black against white is 0.9694 in the authors' evaluator; only pairs such as yellow and blue reach 1.
     assert!((mean(&grey_field(0.0), &grey_field(1.0)) - 0.97).abs() < 0.01);
 }
 

@@ -1,8 +1,8 @@
-//! Test whether two noisy renderings of a scene are the same within their noise.
+//! Test whether two noisy renderings of a scene agree within their noise.
 //!
-//! Each pixel and channel is tested against the hypothesis that both pixel means estimate the same radiance,
-//! at a level (Šidák) that keeps the chance of even one false alarm among all pixels at 1 %. As heavy tails
-//! and inaccurate variances must be expected, the picture passes if 99.75 % of the tests do.
+//! The hypothesis for each pixel and channel is that both pixel means estimate one radiance. The level (Šidák) keeps
+//! the probability of any false alarm among all pixels at 1 %. Because of heavy tails and inaccurate variances, the
+//! image passes if 99.75 % of the tests do.
 //!
 //! Paper: Subr & Arvo, *Statistical Hypothesis Testing for Assessing Monte Carlo Estimators*, 2007.
 
@@ -10,27 +10,27 @@ use super::super::Image;
 use glam::DVec3;
 use serde::Serialize;
 
-/// Chance of any false alarm among all pixels.
+/// Returns the probability that a standard normal variable is at least `z` away from 0.
 pub const SIGNIFICANCE: f64 = 0.01;
-/// Share of the tests that has to pass.
+/// Fraction of the tests that have to pass.
 pub const SHARE_REQUIRED: f64 = 0.9975;
 
-/// The outcome over all pixels and channels.
+/// Outcome over all pixels and channels.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct ZTest {
     /// Level of each test: `1 - (1 - 0.01)^(1 / pixels)`.
     pub level: f64,
-    /// Share of the tests (pixels times channels) whose two-sided p-value is above the level.
+    /// Fraction of the tests (pixels times channels) whose two-sided p-value is above the level.
     pub share_passed: f64,
-    /// True if that is at least 99.75 %.
+    /// True if that is at least [`SHARE_REQUIRED`].
     pub passed: bool,
-    /// Mean of z² over the tests that have a variance; 1 if the differences are mere noise.
+    /// Mean of z² over the tests with a variance; 1 if the differences are noise.
     pub mean_z_squared: f64,
 }
 
-/// Tests `test` against `reference`, given the variances of their pixel means. All four of the same size.
+/// Tests `test` against `reference`, given the variances of their pixel means. All four must have one size.
 ///
-/// Where both variances are 0 the two values must be equal.
+/// If both variances are 0, the two values must be equal.
 pub fn z_test(test: &Image, reference: &Image, test_variance: &Image, reference_variance: &Image) -> ZTest {
     let pixels = reference.pixels.len().max(1) as f64;
     // 1 - (1 - s)^(1/n), without losing digits for large n.
@@ -64,10 +64,10 @@ pub fn z_test(test: &Image, reference: &Image, test_variance: &Image, reference_
 /// Side in pixels of the blocks of [`z_test_blocks`].
 pub const BLOCK: u32 = 8;
 
-/// Applies the same test to means of 8x8 pixels.
+/// Tests means of 8x8 pixels as [`z_test`] tests pixels.
 ///
-/// With few samples a pixel, means are heavy-tailed and variances inaccurate, so that correct pictures fail
-/// the test of single pixels. Means over blocks are nearer to normal, and eight times as sensitive to bias.
+/// With few samples per pixel, means are heavy-tailed and variances inaccurate, so correct images fail the test of
+/// single pixels. Means over blocks are closer to normal, and eight times as sensitive to bias.
 pub fn z_test_blocks(
     test: &Image,
     reference: &Image,
@@ -80,8 +80,8 @@ pub fn z_test_blocks(
     z_test(&test, &reference, &test_variance, &reference_variance)
 }
 
-/// Computes means over blocks, those at the right and bottom edge being smaller; or, from variances of
-/// independent values, the variances of such means.
+/// Returns means over blocks, smaller ones at the right and bottom edge; or the variances of such means, from variances
+/// of independent values.
 fn block_means(image: &Image, variances: bool) -> Image {
     let mut blocks = Image::new(image.width.div_ceil(BLOCK), image.height.div_ceil(BLOCK));
     let columns = blocks.width;
@@ -97,7 +97,7 @@ fn block_means(image: &Image, variances: bool) -> Image {
     blocks
 }
 
-/// Probability that a standard normal variable is at least `z` away from 0.
+/// Returns the probability that a standard normal variable is at least `z` away from 0.
 fn two_sided_p_value(z: f64) -> f64 {
     libm::erfc(z / std::f64::consts::SQRT_2)
 }

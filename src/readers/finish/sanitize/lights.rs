@@ -1,38 +1,76 @@
-//! Lights without light are dropped; negative ones, and places beyond f32, are errors.
+//! Checks of lights. Black lights are dropped; negative lights and positions beyond f32 are errors.
 
-use super::{IN_REACH, SanitizeReport, is_within_reach, main_file};
+use super::reach::{IN_REACH, is_within_reach};
+use super::report::SanitizeReport;
 use crate::draft::Draft;
-use crate::error::SceneError;
-use crate::finish::recentre::Coordinates;
+use crate::error::{Location, SceneError};
+use crate::finish::recentre::LocalCoordinates;
 use base::math::Rgb;
 use scene::{DeltaLight, Environment};
 
+/// Checks all lights, and drops black ones.
 pub(super) fn check_lights(
     draft: &mut Draft,
-    coordinates: &Coordinates,
+    coordinates: &LocalCoordinates,
     report: &mut SanitizeReport,
 ) -> Result<(), SceneError> {
-    let place = main_file(&draft.sources);
-    let check = |light: Rgb, what: &str| match light.is_finite() && light.min_element() >= 0.0 {
+    check_emitters(draft, report)?;
+    check_delta_lights(draft, coordinates)?;
+    let place = draft.main_file();
+    let scene = &mut draft.scene;
+    for disc in &scene.discs {
+        check_light(disc.radiance, "the radiance of a distant disc", &place)?;
+    }
+    let before = draft.lights.len() + scene.discs.len();
+    scene.discs.retain(|disc| disc.radiance != Rgb::ZERO);
+    draft.lights.retain(|(light, _)| power(light) != Rgb::ZERO);
+    report.black_lights += before - draft.lights.len() - scene.discs.len();
+    if let Some(environment) = &mut scene.environment
+        && is_dark(environment, &place, report)?
+    {
+        report.black_lights += 1;
+        scene.environment = None;
+    }
+    Ok(())
+}
+
+/// Rejects light that is negative, infinite or NaN.
+fn check_light(light: Rgb, what: &str, place: &Location) -> Result<(), SceneError> {
+    match light.is_finite() && light.min_element() >= 0.0 {
         true => Ok(()),
         false => Err(place.wrong(format!("{what} {light} is negative or no number"), "give 0 or more")),
-    };
+    }
+}
+
+/// Returns the intensity or irradiance of a light.
+fn power(light: &DeltaLight) -> Rgb {
+    match light {
+        DeltaLight::Point { intensity, .. } | DeltaLight::Spot { intensity, .. } => *intensity,
+        DeltaLight::Directional { irradiance, .. } => *irradiance,
+    }
+}
+
+/// Checks the emission of meshes, and drops black emission.
+fn check_emitters(draft: &mut Draft, report: &mut SanitizeReport) -> Result<(), SceneError> {
+    let place = draft.main_file();
     for mesh in &mut draft.meshes {
         let Some(emission) = mesh.emission else { continue };
-        check(emission.radiance, &format!("mesh \"{}\": the radiance", mesh.name))?;
-        let texture = emission.texture.and_then(|id| draft.textures.get(id.0 as usize));
+        check_light(emission.radiance, &format!("mesh \"{}\": the radiance", mesh.name), &place)?;
+        let texture = emission.texture.and_then(|id| draft.scene.textures.get(id.0 as usize));
         let dark = texture.is_some_and(|t| t.texels.all(|texel| texel.max_element() <= 0.0));
         if emission.radiance == Rgb::ZERO || dark {
             report.black_lights += 1;
             mesh.emission = None;
         }
     }
-    let power = |light: &DeltaLight| match light {
-        DeltaLight::Point { intensity, .. } | DeltaLight::Spot { intensity, .. } => *intensity,
-        DeltaLight::Directional { irradiance, .. } => *irradiance,
-    };
+    Ok(())
+}
+
+/// Rejects negative lights, and lights beyond the reach of f32.
+fn check_delta_lights(draft: &Draft, coordinates: &LocalCoordinates) -> Result<(), SceneError> {
+    let place = draft.main_file();
     for (light, position) in &draft.lights {
-        check(power(light), "a light's intensity")?;
+        check_light(power(light), "a light's intensity", &place)?;
         if !is_within_reach(*position, coordinates) {
             return Err(place.wrong(format!("a light stands at {position}"), IN_REACH));
         }
@@ -42,29 +80,25 @@ pub(super) fn check_lights(
             return Err(place.wrong(what, "scale the scene up, or the light down"));
         }
     }
-    for disc in &draft.discs {
-        check(disc.radiance, "the radiance of a distant disc")?;
-    }
-    let before = draft.lights.len() + draft.discs.len();
-    draft.discs.retain(|disc| disc.radiance != Rgb::ZERO);
-    draft.lights.retain(|(light, _)| power(light) != Rgb::ZERO);
-    report.black_lights += before - draft.lights.len() - draft.discs.len();
-    let dark = match &mut draft.environment {
-        Some(Environment::Constant(radiance)) => {
-            check(*radiance, "the environment's radiance")?;
-            *radiance == Rgb::ZERO
+    Ok(())
+}
+
+/// Checks an environment, and sets its bad texels to 0; returns true if it is black.
+fn is_dark(
+    environment: &mut Environment,
+    place: &Location,
+    report: &mut SanitizeReport,
+) -> Result<bool, SceneError> {
+    match environment {
+        Environment::Constant(radiance) => {
+            check_light(*radiance, "the environment's radiance", place)?;
+            Ok(*radiance == Rgb::ZERO)
         }
-        Some(Environment::Map(map)) => {
+        Environment::Map(map) => {
             let bad = map.radiance.iter_mut().filter(|r| !r.is_finite() || r.min_element() < 0.0);
             report.bad_texels +=
                 bad.map(|r| *r = if r.is_finite() { r.max(Rgb::ZERO) } else { Rgb::ZERO }).count();
-            map.radiance.iter().all(|r| *r == Rgb::ZERO)
+            Ok(map.radiance.iter().all(|r| *r == Rgb::ZERO))
         }
-        None => false,
-    };
-    if dark {
-        report.black_lights += 1;
-        draft.environment = None;
     }
-    Ok(())
 }

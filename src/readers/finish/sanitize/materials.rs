@@ -1,68 +1,101 @@
-//! Materials: numbers out of range are errors; reflectances and texels that would create energy are clamped.
+//! Checks of materials. Numbers out of range are errors; reflectances and texels that would create energy are clamped.
 
-use super::SanitizeReport;
-use crate::error::{Log, Place, SceneError};
+use super::report::SanitizeReport;
+use crate::error::{Location, Log, SceneError};
 use base::math::Rgb;
-use scene::{Fresnel, Lobe, Material, Reflectance, Relief, Roughness, Share, Texels, Texture};
+use scene::{Fresnel, Lobe, Material, Principled, Reflectance, Relief, Roughness, Share, Texels, Texture};
 
-/// Tolerance by which a reflectance may exceed 1 through rounding.
+/// Excess of a reflectance over 1 that counts as rounding.
 const ALBEDO_SLACK: f32 = 1e-3;
-/// Minimum roughness, that of Mitsuba.
+/// Minimum roughness α, as in Mitsuba.
 pub(super) const MIN_ALPHA: f32 = 1e-4;
-/// Maximum roughness, at which a surface is all but black.
+/// Maximum roughness α. Such a surface is almost black.
 const MAX_ALPHA: f32 = 4.0;
-/// Maximum η and k of a conductor; those of metals are below 100, and the fourth powers of these are finite.
+/// Maximum η and k of a conductor. Metals are below 100. The fourth powers are finite in f32.
 const MAX_CONDUCTOR: f32 = 1e6;
 
-/// Checks a material and those mixed with it.
+/// Checks a material and the materials mixed with it; clamps reflectances and texels.
 pub(super) fn check_material(
     material: &mut Material,
     textures: &mut [Texture],
-    place: &Place,
+    place: &Location,
     report: &mut SanitizeReport,
     log: &mut Log,
 ) -> Result<(), SceneError> {
-    let name = material.name.clone();
-    let wrong = |what: String, remedy: &str| Err(place.wrong(format!("material \"{name}\": {what}"), remedy));
-    let positive = |v: f32| v.is_finite() && v > 0.0;
-    let mut etas = Vec::from_iter(material.coat.map(|coat| coat.eta));
+    let checks = MaterialChecks { name: material.name.clone(), place };
     if let Some(principled) = &material.principled {
-        etas.push(principled.eta);
-        if !(0.0..=1.0).contains(&principled.anisotropic) {
-            return wrong(
-                format!("its roughness is anisotropic by {}", principled.anisotropic),
-                "give 0 to 1",
-            );
-        }
-        if !principled.anisotropic_rotation.is_finite() {
-            return wrong("the angle of its anisotropy is not finite".into(), "give an angle");
-        }
-        if !(0.0..=1.0).contains(&principled.clearcoat_gloss) {
-            return wrong(format!("its clear coat's gloss is {}", principled.clearcoat_gloss), "give 0 to 1");
-        }
+        checks.principled(principled)?;
     }
     for lobe in &mut material.lobes {
+        checks.lobe(lobe, textures, report)?;
+    }
+    if let Some(blend) = &mut material.blend {
+        check_material(&mut blend.other, textures, place, report, log)?;
+    }
+    checks.indices_of_refraction(material)?;
+    for reflectance in material.reflectances_mut() {
+        checks.reflectance(reflectance, textures, report, log)?;
+    }
+    for share in material.shares_mut() {
+        checks.share(share, textures, report)?;
+    }
+    if let Some(relief) = &material.relief {
+        let (Relief::Normals { strength: factor, .. } | Relief::Heights { scale: factor, .. }) = relief;
+        if !factor.is_finite() {
+            return Err(checks.wrong(format!("its relief has the factor {factor}"), "give a number"));
+        }
+    }
+    material.opacity = material.opacity.filter(|opacity| *opacity != Share::Constant(1.0));
+    scale_sum(material, place, report, log)
+}
+
+/// Checks of the parts of one material.
+struct MaterialChecks<'a> {
+    name: String,
+    place: &'a Location,
+}
+
+impl MaterialChecks<'_> {
+    fn wrong(&self, what: String, remedy: &str) -> SceneError {
+        self.place.wrong(format!("material \"{}\": {what}", self.name), remedy)
+    }
+
+    fn principled(&self, principled: &Principled) -> Result<(), SceneError> {
+        if !(0.0..=1.0).contains(&principled.anisotropic) {
+            let what = format!("its roughness is anisotropic by {}", principled.anisotropic);
+            return Err(self.wrong(what, "give 0 to 1"));
+        }
+        if !principled.anisotropic_rotation.is_finite() {
+            return Err(self.wrong("the angle of its anisotropy is not finite".into(), "give an angle"));
+        }
+        if !(0.0..=1.0).contains(&principled.clearcoat_gloss) {
+            let what = format!("its clear coat's gloss is {}", principled.clearcoat_gloss);
+            return Err(self.wrong(what, "give 0 to 1"));
+        }
+        Ok(())
+    }
+
+    /// Checks optical constants and roughness; raises roughness to [`MIN_ALPHA`].
+    fn lobe(
+        &self,
+        lobe: &mut Lobe,
+        textures: &mut [Texture],
+        report: &mut SanitizeReport,
+    ) -> Result<(), SceneError> {
         if let Lobe::Rough { fresnel: Fresnel::Conductor { eta, k }, .. }
         | Lobe::Anisotropic { fresnel: Fresnel::Conductor { eta, k }, .. }
         | Lobe::Mirror { fresnel: Fresnel::Conductor { eta, k }, .. } = lobe
         {
             let is_metal = |v: Rgb| v.cmpge(Rgb::ZERO).all() && v.cmple(Rgb::splat(MAX_CONDUCTOR)).all();
             if !(is_metal(*eta) && is_metal(*k)) {
-                return wrong(
-                    format!("its optical constants eta {eta} and k {k} are out of range"),
-                    "give numbers from 0 to 1e6",
-                );
+                let what = format!("its optical constants eta {eta} and k {k} are out of range");
+                return Err(self.wrong(what, "give numbers from 0 to 1e6"));
             }
-        }
-        if let Lobe::Dielectric { eta, .. } | Lobe::RoughDielectric { eta, .. } = lobe {
-            etas.push(*eta);
         }
         match lobe {
             Lobe::Rough { alpha, .. } | Lobe::RoughDielectric { alpha, .. } => {
                 let (Roughness::Constant(value) | Roughness::Textured { scale: value, .. }) = alpha;
-                if !(0.0..=MAX_ALPHA).contains(value) {
-                    return wrong(format!("its roughness is {value}"), "give 0 to 1, at most 4");
-                }
+                self.roughness(*value)?;
                 match alpha {
                     Roughness::Constant(value) => *value = value.max(MIN_ALPHA),
                     Roughness::Textured { texture, scale } => {
@@ -73,72 +106,93 @@ pub(super) fn check_material(
                 }
             }
             Lobe::Anisotropic { alpha, .. } => {
-                if let Some(value) = alpha.iter().find(|value| !(0.0..=MAX_ALPHA).contains(*value)) {
-                    return wrong(format!("its roughness is {value}"), "give 0 to 1, at most 4");
-                }
+                alpha.iter().try_for_each(|value| self.roughness(*value))?;
                 *alpha = alpha.map(|value| value.max(MIN_ALPHA));
             }
             Lobe::Mirror { .. } | Lobe::Dielectric { .. } => {}
         }
+        Ok(())
     }
-    if let Some(blend) = &mut material.blend {
-        check_material(&mut blend.other, textures, place, report, log)?;
+
+    fn roughness(&self, alpha: f32) -> Result<(), SceneError> {
+        match (0.0..=MAX_ALPHA).contains(&alpha) {
+            true => Ok(()),
+            false => Err(self.wrong(format!("its roughness is {alpha}"), "give 0 to 1, at most 4")),
+        }
     }
-    if let Some(eta) = etas.into_iter().find(|eta| !positive(*eta)) {
-        return wrong(format!("its index of refraction is {eta}"), "give a number above 0");
+
+    fn indices_of_refraction(&self, material: &Material) -> Result<(), SceneError> {
+        let of_lobe = |lobe: &Lobe| match lobe {
+            Lobe::Dielectric { eta, .. } | Lobe::RoughDielectric { eta, .. } => Some(*eta),
+            Lobe::Rough { .. } | Lobe::Anisotropic { .. } | Lobe::Mirror { .. } => None,
+        };
+        let of_coat = material.coat.map(|coat| coat.eta);
+        let of_principled = material.principled.as_ref().map(|principled| principled.eta);
+        let of_lobes = material.lobes.iter().filter_map(of_lobe);
+        let mut indices = of_coat.into_iter().chain(of_principled).chain(of_lobes);
+        match indices.find(|eta| !(eta.is_finite() && *eta > 0.0)) {
+            Some(eta) => {
+                Err(self.wrong(format!("its index of refraction is {eta}"), "give a number above 0"))
+            }
+            None => Ok(()),
+        }
     }
-    for reflectance in material.reflectances_mut() {
+
+    fn reflectance(
+        &self,
+        reflectance: &mut Reflectance,
+        textures: &mut [Texture],
+        report: &mut SanitizeReport,
+        log: &mut Log,
+    ) -> Result<(), SceneError> {
         match reflectance {
             Reflectance::Constant(albedo) => {
                 if !albedo.is_finite() || albedo.min_element() < 0.0 {
-                    return wrong(
-                        format!("the reflectance {albedo} is negative or no number"),
-                        "give 0 to 1",
-                    );
+                    let what = format!("the reflectance {albedo} is negative or no number");
+                    return Err(self.wrong(what, "give 0 to 1"));
                 }
                 if albedo.max_element() > 1.0 + ALBEDO_SLACK {
-                    let what = format!("material \"{name}\": the reflectance {albedo} exceeds 1");
-                    log.warn(place, what, "it is clamped to 1")?;
+                    let what = format!("material \"{}\": the reflectance {albedo} exceeds 1", self.name);
+                    log.warn(self.place, what, "it is clamped to 1")?;
                 }
                 report.clamped += usize::from(albedo.max_element() > 1.0);
                 *albedo = albedo.min(Rgb::ONE);
             }
             Reflectance::Textured { texture, scale } => {
                 if !scale.is_finite() || scale.min_element() < 0.0 {
-                    return wrong(
-                        format!("the texture's factor {scale} is negative or no number"),
-                        "give 0 to 1",
-                    );
+                    let what = format!("the texture's factor {scale} is negative or no number");
+                    return Err(self.wrong(what, "give 0 to 1"));
                 }
-                let Some(texture) = textures.get_mut(texture.0 as usize) else { continue };
-                clamp_texels(texture, *scale, report);
+                if let Some(texture) = textures.get_mut(texture.0 as usize) {
+                    clamp_texels(texture, *scale, report);
+                }
             }
         }
+        Ok(())
     }
-    for share in material.shares_mut() {
+
+    fn share(
+        &self,
+        share: &mut Share,
+        textures: &mut [Texture],
+        report: &mut SanitizeReport,
+    ) -> Result<(), SceneError> {
         let (Share::Constant(value) | Share::Textured { scale: value, .. }) = share;
         if !(*value >= 0.0 && *value <= 1.0 + ALBEDO_SLACK) {
-            return wrong(format!("a share of {value}"), "give 0 to 1");
+            return Err(self.wrong(format!("a share of {value}"), "give 0 to 1"));
         }
         *value = value.min(1.0);
         if let Share::Textured { texture, .. } = share {
             textures.get_mut(texture.0 as usize).into_iter().for_each(|t| clamp_texels(t, Rgb::ONE, report));
         }
+        Ok(())
     }
-    if let Some(relief) = &material.relief {
-        let (Relief::Normals { strength: factor, .. } | Relief::Heights { scale: factor, .. }) = relief;
-        if !factor.is_finite() {
-            return wrong(format!("its relief has the factor {factor}"), "give a number");
-        }
-    }
-    material.opacity = material.opacity.filter(|opacity| *opacity != Share::Constant(1.0));
-    scale_sum(material, place, report, log)
 }
 
-/// Scales a bare Lambert base and lobes of constant reflectance that exceed 1 together, as Mitsuba does.
+/// Scales a bare Lambert base and lobes of constant reflectance whose sum exceeds 1, as Mitsuba does.
 fn scale_sum(
     material: &mut Material,
-    place: &Place,
+    place: &Location,
     report: &mut SanitizeReport,
     log: &mut Log,
 ) -> Result<(), SceneError> {

@@ -1,15 +1,15 @@
 use super::materials::MIN_ALPHA;
 use super::*;
-use crate::draft::DraftCamera;
-use crate::draft::Shot;
+use crate::draft::{DraftCamera, DraftMesh, Shot};
 use base::math::Rgb;
+use glam::{DVec3, Vec3};
 use scene::{
     Coat, DeltaLight, Distribution, Emission, Environment, Filter, Fresnel, Lobe, Material, MaterialId,
-    Reflectance, Texels, Texture, TextureId, Wrap,
+    PixelFilter, Projection, Reflectance, Scene, Texels, Texture, TextureId, Wrap,
 };
 
-/// Sanitises, where warnings do not matter.
-fn sanitize(draft: &mut Draft) -> Result<(SanitizeReport, Coordinates), SceneError> {
+/// Sanitises a draft; warnings do not matter.
+fn sanitize(draft: &mut Draft) -> Result<(SanitizeReport, LocalCoordinates), SceneError> {
     super::sanitize(draft, &mut Log::new(false))
 }
 
@@ -31,18 +31,11 @@ fn draft(meshes: Vec<DraftMesh>, materials: Vec<Material>) -> Draft {
         filter: Default::default(),
     };
     Draft {
-        name: "t".into(),
-        sources: vec!["t.toml".into()],
+        scene: Scene { name: "t".into(), sources: vec!["t.toml".into()], materials, ..Scene::default() },
         shot: Shot { camera, fits: false, path: vec![], resolution: [1, 1], crop: None },
-        max_depth: None,
-        hides_emitters: false,
         meshes,
-        materials,
-        material_places: vec![],
-        textures: vec![],
         lights: vec![],
-        environment: None,
-        discs: vec![],
+        material_places: vec![],
     }
 }
 
@@ -79,7 +72,7 @@ fn each_kind_of_bad_triangle_is_dropped_and_counted() {
 
 #[test]
 fn triangles_that_vanish_in_f32_are_degenerate() {
-    // Far from its own centre, this triangle is smaller than the spacing of f32.
+    // The triangle is far from its centre, and smaller than the spacing of f32 there.
     let mut mesh = triangle_mesh();
     mesh.positions =
         [DVec3::ZERO, DVec3::X * 1e-9, DVec3::Y * 1e-9].iter().map(|p| *p + DVec3::ONE).collect();
@@ -94,14 +87,14 @@ fn triangles_that_vanish_in_f32_are_degenerate() {
     let mut d = draft(vec![mesh.clone(), other_mesh()], vec![grey()]);
     let error = super::sanitize(&mut d, &mut log).unwrap_err().to_string();
     assert!(error.contains("1 triangles are too small"), "{error}");
-    // Alone it is kept.
+    // A triangle alone is kept.
     let mut d = draft(vec![mesh], vec![grey()]);
     assert!(sanitize(&mut d).unwrap().0.is_clean());
 }
 
 #[test]
 fn all_is_finite_however_small_what_is_left_of_a_scene() {
-    // Triangles without area, of vertices that differ; they alone, and beside others.
+    // Triangles without area have distinct vertices here. They stand alone, and beside others.
     let mut flat = triangle_mesh();
     flat.positions = vec![DVec3::Y, DVec3::new(5e-39, 1.0, 0.0)];
     flat.triangles = vec![[0, 0, 0], [1, 1, 1]];
@@ -174,7 +167,7 @@ fn reflectances_must_not_create_energy() {
     let mut log = Log::new(false);
     let mut d = draft(vec![], vec![with(Rgb::new(1.1, 0.5, 0.0))]);
     super::sanitize(&mut d, &mut log).unwrap();
-    assert_eq!(d.materials[0].diffuse, Reflectance::Constant(Rgb::new(1.0, 0.5, 0.0)));
+    assert_eq!(d.scene.materials[0].diffuse, Reflectance::Constant(Rgb::new(1.0, 0.5, 0.0)));
     let warnings = log.into_warnings();
     assert!(
         warnings.len() == 1 && warnings[0].to_string().contains("exceeds 1; it is clamped"),
@@ -182,7 +175,7 @@ fn reflectances_must_not_create_energy() {
     );
     let mut d = draft(vec![], vec![with(Rgb::new(1.0005, 1.0, 0.0))]);
     assert_eq!(sanitize(&mut d).unwrap().0.clamped, 1);
-    assert_eq!(d.materials[0].diffuse, Reflectance::Constant(Rgb::new(1.0, 1.0, 0.0)));
+    assert_eq!(d.scene.materials[0].diffuse, Reflectance::Constant(Rgb::new(1.0, 1.0, 0.0)));
 
     let lobe = |fresnel, scale| Lobe::Rough {
         distribution: Distribution::Ggx,
@@ -195,9 +188,9 @@ fn reflectances_must_not_create_energy() {
     let mut d = draft(vec![], vec![glossy(Fresnel::One, 0.75)]);
     let mut log = Log::new(false);
     super::sanitize(&mut d, &mut log).unwrap();
-    assert_eq!(d.materials[0].diffuse, Reflectance::Constant(Rgb::splat(0.4)));
+    assert_eq!(d.scene.materials[0].diffuse, Reflectance::Constant(Rgb::splat(0.4)));
     let scaled = Reflectance::Constant(Rgb::splat(0.6));
-    assert!(matches!(d.materials[0].lobes[..], [Lobe::Rough { scale, .. }] if scale == scaled));
+    assert!(matches!(d.scene.materials[0].lobes[..], [Lobe::Rough { scale, .. }] if scale == scaled));
     assert!(log.into_warnings()[0].to_string().contains("exceed 1 together"));
     assert!(
         super::sanitize(&mut draft(vec![], vec![glossy(Fresnel::One, 0.75)]), &mut Log::new(true)).is_err()
@@ -205,7 +198,9 @@ fn reflectances_must_not_create_energy() {
     assert!(sanitize(&mut draft(vec![], vec![glossy(Fresnel::Dielectric(1.5), 1.0)])).is_ok());
     let mut d = draft(vec![], vec![glossy(Fresnel::One, 0.5)]);
     sanitize(&mut d).unwrap();
-    assert!(matches!(d.materials[0].lobes[..], [Lobe::Rough { alpha, .. }] if alpha == MIN_ALPHA.into()));
+    assert!(
+        matches!(d.scene.materials[0].lobes[..], [Lobe::Rough { alpha, .. }] if alpha == MIN_ALPHA.into())
+    );
 
     let coated = |eta| Material { coat: Some(Coat { eta, nonlinear: false }), ..grey() };
     for eta in [0.0, -1.5, f32::NAN] {
@@ -278,11 +273,11 @@ fn texels_are_clamped_to_what_their_factor_leaves() {
     };
     let diffuse = Reflectance::Textured { texture: TextureId(0), scale: Rgb::splat(2.0) };
     let mut d = draft(vec![], vec![Material { diffuse, ..grey() }]);
-    d.textures.push(texture);
+    d.scene.textures.push(texture);
     let (report, _) = sanitize(&mut d).unwrap();
     assert_eq!((report.clamped, report.bad_texels), (1, 2));
     let expected = [Rgb::splat(0.5), Rgb::ZERO, Rgb::new(0.0, 0.2, 0.2), Rgb::splat(0.4)];
-    assert!(d.textures[0].texels.iter().eq(expected));
+    assert!(d.scene.textures[0].texels.iter().eq(expected));
 }
 
 #[test]
@@ -296,12 +291,12 @@ fn lights_without_light_go_and_negative_light_is_an_error() {
     let mut d = draft(vec![emitting(Rgb::ZERO), emitting(Rgb::ONE), flat], vec![grey()]);
     let point = |intensity| (DeltaLight::Point { position: Vec3::ZERO, intensity }, DVec3::ZERO);
     d.lights = vec![point(Rgb::ZERO), point(Rgb::X)];
-    d.environment = Some(Environment::Constant(Rgb::ZERO));
+    d.scene.environment = Some(Environment::Constant(Rgb::ZERO));
     let (report, _) = sanitize(&mut d).unwrap();
     assert_eq!((report.black_lights, report.empty_meshes, report.degenerate), (3, 1, 1));
     assert_eq!(d.meshes.iter().map(|m| m.emission.is_some()).collect::<Vec<_>>(), [false, true]);
     assert_eq!(d.lights.len(), 1);
-    assert!(d.environment.is_none());
+    assert!(d.scene.environment.is_none());
 
     assert!(sanitize(&mut draft(vec![emitting(Rgb::new(1.0, -1.0, 1.0))], vec![grey()])).is_err());
     let mut d = draft(vec![], vec![]);

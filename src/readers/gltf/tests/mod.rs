@@ -2,7 +2,7 @@ mod model;
 mod samples;
 mod slow_damage;
 
-use super::super::{Level, LoadOptions, Loaded, SceneError, load};
+use super::super::{LoadOptions, Loaded, SceneError, Severity, load};
 use base::math::luminance;
 use glam::{Vec2, Vec3};
 use model::Model;
@@ -35,7 +35,7 @@ fn principled<'a>(loaded: &'a Loaded, name: &str) -> &'a Principled {
     material(loaded, name).principled.as_ref().unwrap()
 }
 
-/// Bounds of a mesh in the file's coordinates.
+/// Returns the bounds of a mesh in the file's coordinates.
 fn bounds(loaded: &Loaded, mesh: usize) -> [Vec3; 2] {
     let centre = loaded.scene.centre.as_vec3();
     let positions = loaded.scene.meshes[mesh].positions.iter().map(|p| p + centre);
@@ -49,7 +49,7 @@ fn every_sample_loads_and_names_what_it_does_not_get() {
         let warnings: Vec<&str> = loaded
             .warnings
             .iter()
-            .filter(|w| w.level == Level::Warning && !w.what.contains("no light"))
+            .filter(|w| w.severity == Severity::Warning && !w.what.contains("no light"))
             .map(|w| w.what.as_str())
             .collect();
         assert_eq!(warnings.len(), lacks.len(), "{name}: {warnings:?}");
@@ -64,7 +64,7 @@ fn nodes_place_instances_of_meshes() {
     let loaded = sample("instances");
     let names: Vec<&str> = loaded.scene.meshes.iter().map(|mesh| mesh.name.as_str()).collect();
     assert_eq!(names, ["left", "right", "big"]);
-    // A quarter turn about y takes x to -z.
+    // A rotation by 90° about y maps x to -z.
     let expected = [
         [Vec3::new(0.0, -1.0, 2.0), Vec3::new(0.0, 1.0, 4.0)],
         [Vec3::new(0.0, -2.0, -4.0), Vec3::new(0.0, 2.0, -2.0)],
@@ -78,7 +78,7 @@ fn nodes_place_instances_of_meshes() {
     let brass = principled(&loaded, "brass");
     assert_eq!(brass.base_color, Reflectance::Constant(Vec3::new(0.9, 0.7, 0.3)));
     assert_eq!((brass.metallic, brass.roughness), (Share::Constant(1.0), Share::Constant(0.4)));
-    // Everything is in view of the camera that it lacks.
+    // The model has no camera; the default camera sees all of it.
     assert!(loaded.cameras.still.origin.length() > 5.0);
 }
 
@@ -138,7 +138,7 @@ fn lights_have_positions_directions_and_units() {
         DeltaLight::Spot { direction: Vec3::NEG_Z, inner_angle: 0.2, outer_angle: 0.5, .. }
     ));
 
-    // A scene file says otherwise, turns the model, and leaves all but the lights out.
+    // A scene file overrides the lights, rotates the model, and selects the lights only.
     let (_, model, _) = samples::all().into_iter().find(|(name, ..)| *name == "lights").unwrap();
     let scene = "[[mesh]]\nfile = \"m.glb\"\nlumens_per_watt = 1\ntransform = [{ translate = [0, 0, 7] }]\n";
     let loaded = load_beside("s.toml", &[("m.glb", &model.glb()), ("s.toml", scene.as_bytes())]).unwrap();
@@ -156,17 +156,17 @@ fn cameras_and_their_animation_are_the_walk() {
     assert_eq!(cameras.resolution, [1018, 509]);
     assert!((cameras.still.tan_half_x - 2.0 * 0.5f32.tan()).abs() < 1e-4 && cameras.still.near == 0.1);
     assert!((cameras.still.origin + centre).distance(Vec3::Z * 5.0) < 1e-5);
-    // From .5 to 2.5 s, 24 frames a second.
+    // The animation lasts from 0.5 to 2.5 s, at 24 frames per second.
     assert_eq!(cameras.path.len(), 49);
     let at = |frame: usize| cameras.path[frame - 1].origin + centre;
-    // The spline of the camera itself: Hermite, from 5 to 6 with a tangent of 2 at the start.
+    // The camera's own spline is Hermite, from 5 to 6, with a tangent of 2 at the start.
     let t = 0.5f32;
     let z = (2.0 * t.powi(3) - 3.0 * t * t + 1.0) * 5.0
         + (t.powi(3) - 2.0 * t * t + t) * 2.0
         + (3.0 * t * t - 2.0 * t.powi(3)) * 6.0;
     assert!(at(1).distance(Vec3::new(0.0, 0.0, 5.0)) < 1e-5);
     assert!(at(13).distance(Vec3::new(2.0, 0.0, z)) < 1e-5, "{}", at(13));
-    // Turned by a quarter from the second key on, the camera's own z points to x.
+    // The rotation is 90° from the second key on, so the camera's z points to x.
     assert!(at(25).distance(Vec3::new(4.0 + 6.0, 0.0, 0.0)) < 1e-5, "{}", at(25));
     assert!(cameras.path[24].forward.distance(Vec3::NEG_X) < 1e-5);
     assert!(at(49).distance(Vec3::new(4.0, 8.0, -6.0)) < 1e-5, "{}", at(49));
@@ -216,7 +216,7 @@ fn alpha_modes_are_opacity() {
         }
         _ => panic!(),
     };
-    // Alpha times a factor of .5 against a cutoff of .45.
+    // Alpha times a factor of 0.5 is compared with a cutoff of 0.45.
     assert_eq!(texels(opacity[0]), (vec![255.0, 0.0, 0.0, 255.0], 1.0));
     assert_eq!(opacity[1], Some(Share::Constant(0.25)));
     assert_eq!(texels(opacity[2]), (vec![255.0, 0.0, 100.0, 255.0], 0.5));
@@ -248,7 +248,7 @@ fn layers_lie_over_the_base() {
     assert_eq!(principled(&loaded, "velvet").sheen, Share::Constant(0.5));
     let eta = principled(&loaded, "dull").eta;
     assert!((((eta - 1.0) / (eta + 1.0)).powi(2) - 0.01).abs() < 1e-6);
-    // The extension's own formula: α .25 across, and .25 + .75 · .36 along.
+    // Formula of the extension: α is 0.25 across, and 0.25 + 0.75 · 0.36 along.
     for (name, [along, across]) in
         [("brushed 0.5", [0.52, 0.25]), ("brushed 0.1", [1.0, 0.1].map(|a| a * 0.1f32.sqrt()))]
     {

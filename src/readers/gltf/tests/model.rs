@@ -1,8 +1,8 @@
-//! Small models, built piece by piece.
+//! Small models, built from pieces.
 
 use serde_json::{Value, json};
 
-/// A model in the making: its JSON and its binary chunk.
+/// A model under construction: its JSON and its binary chunk.
 pub struct Model {
     pub json: Value,
     pub binary: Vec<u8>,
@@ -17,7 +17,7 @@ impl Model {
         Model { json, binary: Vec::new() }
     }
 
-    /// Adds an object to a list of the file; returns its number.
+    /// Adds an object to a list of the file; returns its index.
     pub fn push(&mut self, list: &str, object: Value) -> usize {
         if self.json[list].is_null() {
             self.json[list] = json!([]);
@@ -52,7 +52,7 @@ impl Model {
         self.accessor(&bytes, COMPONENT_U16, "SCALAR", indices.len())
     }
 
-    /// A mesh of one square from (-1, -1, 0) to (1, 1, 0) that faces +z.
+    /// Adds a mesh of one square from (-1, -1, 0) to (1, 1, 0) that faces +z.
     pub fn square(&mut self, material: Option<usize>) -> usize {
         let positions =
             self.floats(&[[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [1.0, 1.0, 0.0], [-1.0, 1.0, 0.0]]);
@@ -75,14 +75,14 @@ impl Model {
         number
     }
 
-    /// A square of a material as a node of the scene.
+    /// Adds a square of a material as a node of the scene.
     pub fn shown(&mut self, material: Value) -> usize {
         let material = self.push("materials", material);
         let mesh = self.square(Some(material));
         self.node(json!({ "mesh": mesh }))
     }
 
-    /// Adds a picture of 2 by 2 texels, top row first, and a texture of it.
+    /// Adds an image of 2 by 2 texels, top row first, and a texture of it.
     pub fn texture(&mut self, texels: [[u8; 4]; 4], sampler: Value) -> usize {
         let image = image::RgbaImage::from_fn(2, 2, |x, y| image::Rgba(texels[(2 * y + x) as usize]));
         let mut png = std::io::Cursor::new(Vec::new());

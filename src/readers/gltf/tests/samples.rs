@@ -1,4 +1,4 @@
-//! A sample model for every feature.
+//! Sample models for every feature.
 
 use super::model::Model;
 use serde_json::{Value, json};
@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 const WHITE: [u8; 4] = [255; 4];
 const CLEAR: [u8; 4] = [255, 255, 255, 0];
 
-/// Every model with its name and the features that it asks for and does not get.
+/// Returns every model with its name and the unsupported features that it asks for.
 pub fn all() -> Vec<(&'static str, Model, &'static [&'static str])> {
     vec![
         ("instances", instances(), &[]),
@@ -35,7 +35,7 @@ pub fn all() -> Vec<(&'static str, Model, &'static [&'static str])> {
     ]
 }
 
-/// Two instances of a mesh below a turned node, another scaled by a matrix.
+/// Returns two instances of a mesh below a rotated node, and one scaled by a matrix.
 fn instances() -> Model {
     let mut model = Model::new();
     let material = json!({
@@ -107,7 +107,8 @@ fn lights() -> Model {
     model
 }
 
-/// A camera that one animation moves, by each interpolation, and turns; another moves it, too, and a square.
+/// Returns a camera that one animation moves with each interpolation, and rotates. Another animation moves it, too, and
+/// a square.
 fn camera() -> Model {
     let mut model = Model::new();
     let lens =
@@ -233,7 +234,7 @@ fn unlit() -> Model {
     model
 }
 
-/// Strips, fans, points, quantised and sparse positions.
+/// Returns strips, fans, points, quantised and sparse positions.
 fn topology() -> Model {
     let mut model = Model::new();
     let corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 1.0, 0.0], [0.0, 2.0, 0.0]];

@@ -1,10 +1,11 @@
-//! Damaged and absurd models: an error or a sound scene, never a panic, and no memory but for what the file holds.
+//! Tests of damaged and absurd models. They end in an error or a sound scene, never in a panic, and use no more memory
+//! than the file holds.
 
 use super::model::{COMPONENT_F32, Model};
 use super::{load_bytes, samples};
 use serde_json::{Value, json};
 
-/// A random generator good enough to pick bytes with.
+/// A generator of random bytes.
 struct Lcg(u64);
 
 impl Lcg {
@@ -14,7 +15,7 @@ impl Lcg {
     }
 }
 
-/// Loads the file; true if it is a scene, which then is sound.
+/// Loads the file; returns true if it is a scene, and asserts that the scene is sound.
 fn survives(bytes: &[u8]) -> bool {
     let Ok(loaded) = load_bytes("m.glb", bytes) else { return false };
     for mesh in &loaded.scene.meshes {
@@ -43,7 +44,7 @@ fn cut_and_flipped_files_never_panic() {
                     bytes[at] = random.below(256) as u8;
                 }),
                 2 => {
-                    // A digit becomes another: types, counts, offsets and indices out of range.
+                    // Another digit gives types, counts, offsets and indices out of range.
                     let digits: Vec<usize> = (20..json).filter(|&i| bytes[i].is_ascii_digit()).collect();
                     bytes[digits[random.below(digits.len())]] = b"0123456789"[random.below(10)];
                 }
@@ -61,7 +62,7 @@ fn cut_and_flipped_files_never_panic() {
     assert!(survived > 100 && failed > 100, "{survived} {failed}: the damage is one-sided");
 }
 
-/// Every number of every model becomes absurd, one at a time.
+/// Replaces every number of every model by absurd ones, one at a time.
 #[test]
 fn absurd_numbers_never_panic() {
     for (_, model, _) in samples::all() {
@@ -159,7 +160,7 @@ fn what_is_wrong_is_named_with_a_remedy() {
     says(load_bytes("m.gltf", b"{\n\"asset\": [\n}").map(|_| ()).unwrap_err().to_string(), "m.gltf:3");
 }
 
-/// Few bytes, many triangles: a hundred thousand instances of a mesh of ten thousand triangles.
+/// A small file has many triangles: a hundred thousand instances of a mesh of ten thousand triangles.
 #[test]
 fn instances_beyond_memory_are_an_error() {
     let mut model = Model::new();

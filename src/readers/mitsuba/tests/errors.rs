@@ -1,4 +1,4 @@
-//! Errors and warnings: inputs that cannot be read, or not as they were meant.
+//! Tests of errors and warnings: inputs that cannot be read, or not as meant.
 
 use super::*;
 
@@ -23,7 +23,7 @@ fn what_is_not_modelled_is_replaced_with_a_warning_of_its_line() {
         let loaded = load_body(&body).unwrap();
         let [warning] = &loaded.warnings[..] else { panic!("{:?}", loaded.warnings) };
         assert!(warning.to_string().contains(what) && warning.place.line == Some(5), "{warning}");
-        assert_eq!(warning.level, Level::Warning);
+        assert_eq!(warning.severity, Severity::Warning);
         let message = load_with(&body, &[], true).unwrap_err();
         assert!(message.contains("s.xml:5") && message.contains("strict"), "{message}");
     }
@@ -61,7 +61,7 @@ fn what_is_not_modelled_is_replaced_with_a_warning_of_its_line() {
         .map(|blend| if let Share::Constant(weight) = blend.weight { weight } else { panic!() })
         .collect();
     assert_eq!(warnings, 0);
-    // Of the last three, of the last two, and of black, which takes the rest.
+    // The weights are those of the last three, of the last two, and of black, which takes the rest.
     let expected = [0.8, 0.5 / 0.8, 0.25 / 0.5];
     assert!(
         shares.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-6) && shares.len() == 3,
@@ -170,12 +170,12 @@ fn errors_of_several_objects_are_told_together_each_with_its_line() {
         assert!(line.contains(part) && line.contains("; "), "{message}");
     }
     assert_eq!(message.lines().count(), 3, "{message}");
-    // Values that cannot be read are told before what follows from them.
+    // Values that cannot be read are reported before errors that follow from them.
     let body =
         "<shape type=\"obj\"><string name=\"filename\" value=\"$a\"/><float name=\"x\" value=\"y\"/></shape>";
     let message = load_body(body).map(|_| ()).unwrap_err();
     assert!(message.lines().count() == 2 && message.contains("-D a="), "{message}");
-    // Files that cannot be opened, each with the system's reason once.
+    // Messages of files that cannot be opened give the system's reason once.
     let body = "<shape type=\"obj\"><string name=\"filename\" value=\"a.obj\"/></shape>\n\
         <shape type=\"ply\"><string name=\"filename\" value=\"b.ply\"/></shape>";
     let message = load_body(body).map(|_| ()).unwrap_err();

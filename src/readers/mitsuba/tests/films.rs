@@ -1,8 +1,8 @@
-//! Films, integrators, spectra of black bodies, and metals in water.
+//! Tests of films, integrators, spectra of black bodies, and metals in water.
 
 use super::*;
 
-/// Loads a scene with a film of 8 by 4 pixels that has `film` in it, and `integrator`.
+/// Loads a scene with a film of 8 by 4 pixels that contains `film`, and with `integrator`.
 fn with_film(film: &str, integrator: &str) -> Result<Loaded, String> {
     let sensor = SENSOR.replace("<rfilter type=\"box\"/>", film);
     let folder = tempfile::tempdir().unwrap();

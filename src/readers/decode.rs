@@ -1,58 +1,59 @@
-//! Pictures from files to linear colour: PNG, JPEG, BMP, TGA through `image`, Radiance HDR and OpenEXR.
+//! Decoding of image files to linear colour: PNG, JPEG, BMP and TGA with the crate `image`, Radiance HDR, and OpenEXR.
 //!
-//! 8- and 16-bit pictures are sRGB unless read raw; floating-point ones are linear. Alpha is dropped, as in
-//! Mitsuba.
+//! Images of 8 or 16 bits are sRGB unless read raw. Floating-point images are linear. Alpha is dropped, as in Mitsuba.
 
 use super::budget::lacking;
-use super::error::{Place, SceneError};
+use super::error::{Location, SceneError};
 use base::math::Rgb;
 use image::{DynamicImage, ImageDecoder};
 use scene::Texels;
 use std::io::Cursor;
 use std::path::Path;
 
-/// Maximum number of pixels: 16k by 16k.
+/// Maximum number of pixels: 16384 by 16384.
 const MAX_PIXELS: usize = 1 << 28;
-/// Maximum number of pixels of a small file, and of pixels a byte of larger ones, which only a file of one colour has.
+/// Number of pixels up to which a file may be of any length.
 const MAX_SMALL: usize = 1 << 24;
+/// Maximum number of pixels per byte of larger images. Only files of one colour reach it.
 const MAX_PIXELS_PER_BYTE: usize = 1 << 13;
-/// Maximum number of bytes of a decoded pixel: four channels of 32 bits.
+/// Maximum bytes per decoded pixel: four channels of 32 bits.
 const MAX_PIXEL_BYTES: u64 = 16;
 
-/// Memory of a pixel while its picture is decoded and put into squares, about: in 8 bits a channel, and in more, beside
-/// the channels of OpenEXR.
+/// Estimated bytes per pixel while an image of 8 bits per channel is decoded and stored.
 const SHORT_PIXEL_BYTES: u64 = 12;
+/// Estimated bytes per pixel while a deeper image is decoded and stored.
 const LONG_PIXEL_BYTES: u64 = 36;
 
-/// Remedy for a picture that there is no memory for.
+/// Remedy for an image that does not fit into memory.
 pub(super) const SMALLER: &str = "make it smaller, or give more memory";
 
-/// A decoded picture, top row first.
+/// A decoded image, top row first.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Picture {
+pub struct DecodedImage {
     pub width: usize,
     pub height: usize,
     pub texels: Texels,
 }
 
-/// Part of a picture that is asked for.
+/// Channels of an image to decode.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Channel {
     /// Linear colour.
     Colour,
-    /// Integer values of all channels as they are, not decoded from sRGB.
+    /// All channels, without decoding from sRGB.
     Data,
-    /// One such channel alone in 8 bits, as a grey: 0 to 3 for red, green, blue and alpha, 1 where there is none.
+    /// One channel, without decoding from sRGB, as a grey of 8 bits. 0 to 3 stand for red, green, blue and alpha; a
+    /// missing channel is 1.
     One(usize),
-    /// 1 where alpha is at least so much, else 0.
+    /// 1 if alpha is at least the value, else 0.
     AlphaFrom(f32),
 }
 
-/// Reason why there is no picture.
+/// Reason for rejecting an image.
 enum Refusal {
-    /// Bytes that are no picture.
+    /// The bytes are no image.
     Undecodable(String),
-    /// A picture that there is no memory for.
+    /// The image does not fit into memory.
     TooLarge(String),
 }
 
@@ -62,26 +63,29 @@ impl<E: std::fmt::Display> From<E> for Refusal {
     }
 }
 
-/// Decodes a part of `bytes`; `path` tells the format of files without a signature.
-pub fn decode(bytes: &[u8], channel: Channel, path: &Path, place: &Place) -> Result<Picture, SceneError> {
-    let picture = if bytes.starts_with(&[0x76, 0x2F, 0x31, 0x01]) {
+/// Decodes channels of an image; `path` tells the format of files without a signature.
+pub fn decode(
+    bytes: &[u8],
+    channel: Channel,
+    path: &Path,
+    place: &Location,
+) -> Result<DecodedImage, SceneError> {
+    let image = if bytes.starts_with(&[0x76, 0x2F, 0x31, 0x01]) {
         decode_exr(bytes)
     } else {
         decode_common(bytes, channel, path)
     };
-    let picture = picture.and_then(|p| match p.texels.is_empty() {
+    let image = image.and_then(|p| match p.texels.is_empty() {
         true => Err("it has no pixels".into()),
         false => Ok(p),
     });
-    picture.map_err(|refusal| match refusal {
-        Refusal::Undecodable(what) => {
-            SceneError::Picture { place: place.clone(), path: path.to_owned(), what }
-        }
+    image.map_err(|refusal| match refusal {
+        Refusal::Undecodable(what) => SceneError::Image { place: place.clone(), path: path.to_owned(), what },
         Refusal::TooLarge(what) => place.wrong(format!("{}: {what}", path.display()), SMALLER),
     })
 }
 
-fn decode_exr(bytes: &[u8]) -> Result<Picture, Refusal> {
+fn decode_exr(bytes: &[u8]) -> Result<DecodedImage, Refusal> {
     use exr::prelude::*;
     // The size is checked before any allocation that depends on it.
     let meta = exr::meta::MetaData::read_from_buffered(Cursor::new(bytes), false)?;
@@ -90,7 +94,7 @@ fn decode_exr(bytes: &[u8]) -> Result<Picture, Refusal> {
         let of_channels = 4 * header.channels.list.len() as u64;
         check_size(width, height, of_channels + LONG_PIXEL_BYTES, bytes)?;
     }
-    // Mitsuba names luminance images Y; `rgb_channels` would refuse those.
+    // Mitsuba names luminance images Y, and `rgb_channels` rejects them.
     let image = read()
         .no_deep_data()
         .largest_resolution_level()
@@ -118,11 +122,12 @@ fn decode_exr(bytes: &[u8]) -> Result<Picture, Refusal> {
     if texels.len() != width * height {
         return Err("subsampled channels".into());
     }
-    Ok(Picture { width, height, texels: Texels::new(width, &texels) })
+    Ok(DecodedImage { width, height, texels: Texels::new(width, &texels) })
 }
 
-/// Rejects sizes that no picture has, or none of so few bytes, or for which there is no memory, before anything is
-/// allocated for them.
+/// Rejects sizes that no image has, that the file is too short for, or that do not fit into memory.
+///
+/// This happens before anything of that size is allocated.
 fn check_size(width: usize, height: usize, pixel_bytes: u64, bytes: &[u8]) -> Result<(), Refusal> {
     let most = bytes.len().saturating_mul(MAX_PIXELS_PER_BYTE).clamp(MAX_SMALL, MAX_PIXELS);
     let Some(pixels) = width.checked_mul(height).filter(|pixels| *pixels <= most) else {
@@ -137,8 +142,8 @@ fn check_size(width: usize, height: usize, pixel_bytes: u64, bytes: &[u8]) -> Re
     }
 }
 
-fn decode_common(bytes: &[u8], channel: Channel, path: &Path) -> Result<Picture, Refusal> {
-    // The other signature of Radiance HDR, which Mitsuba writes and the decoder does not know.
+fn decode_common(bytes: &[u8], channel: Channel, path: &Path) -> Result<DecodedImage, Refusal> {
+    // Mitsuba writes the other signature of Radiance HDR, which the decoder rejects.
     let signed = bytes.strip_prefix(b"#?RGBE").map(|rest| [b"#?RADIANCE", rest].concat());
     let bytes = signed.as_deref().unwrap_or(bytes);
     let mut reader = image::ImageReader::new(Cursor::new(bytes)).with_guessed_format()?;
@@ -161,7 +166,7 @@ fn decode_common(bytes: &[u8], channel: Channel, path: &Path) -> Result<Picture,
     let grey = |code: &dyn Fn(&[u8; 4]) -> u8| {
         let codes: Vec<[u8; 4]> = image.to_rgba8().pixels().map(|p| [code(&p.0); 4]).collect();
         let texels = Texels::coded(width, &codes, std::array::from_fn(|code| code as f32 / 255.0));
-        Ok(Picture { width, height, texels })
+        Ok(DecodedImage { width, height, texels })
     };
     let raw = match channel {
         Channel::Colour => false,
@@ -187,7 +192,7 @@ fn decode_common(bytes: &[u8], channel: Channel, path: &Path) -> Result<Picture,
             Texels::coded(width, &codes, std::array::from_fn(|code| linear(code as f32 / 255.0, raw)))
         }
     };
-    Ok(Picture { width, height, texels })
+    Ok(DecodedImage { width, height, texels })
 }
 
 fn linear(encoded: f32, raw: bool) -> f32 {
@@ -204,9 +209,9 @@ mod tests {
     use super::*;
     use std::path::PathBuf;
 
-    fn decode_file(bytes: &[u8], raw: bool, name: &str) -> Result<Picture, SceneError> {
+    fn decode_file(bytes: &[u8], raw: bool, name: &str) -> Result<DecodedImage, SceneError> {
         let channel = if raw { Channel::Data } else { Channel::Colour };
-        decode(bytes, channel, Path::new(name), &Place::file(Path::new("s.toml")))
+        decode(bytes, channel, Path::new(name), &Location::file(Path::new("s.toml")))
     }
 
     fn corpus(name: &str) -> Vec<u8> {
@@ -268,7 +273,7 @@ mod tests {
         let sky = decode_file(&radiance(width, height), false, "sky.hdr").unwrap();
         assert_eq!((sky.width, sky.height), (width.into(), height));
         assert!((sky.texels.get(0, height - 1) - Rgb::new(1.0, 0.5, 0.25)).length() < 1e-2);
-        // Of either signature.
+        // Both signatures are read.
         let small = radiance(8, 2);
         let other = [b"#?RGBE", &small[b"#?RADIANCE".len()..]].concat();
         let decoded = |bytes: &[u8]| decode_file(bytes, false, "sky.hdr").unwrap();

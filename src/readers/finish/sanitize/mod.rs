@@ -1,0 +1,88 @@
+//! Removal and repair of invalid scene content, with one report.
+//!
+//! - Triangles that no ray can hit are dropped.
+//! - Invalid normals are replaced by geometric ones.
+//! - Lights without power are dropped.
+//! - Reflectances that would create energy are clamped.
+//! - Negative light is an error, because no image could be computed from it.
+
+mod cameras;
+mod lights;
+mod materials;
+mod meshes;
+mod reach;
+mod report;
+
+use super::coincident::drop_coincident_emitters;
+use super::framing;
+use super::recentre::LocalCoordinates;
+use crate::draft::Draft;
+use crate::error::{Log, SceneError};
+use cameras::check_camera;
+use glam::Vec2;
+use lights::check_lights;
+use materials::check_material;
+use meshes::{drop_rounded, drop_unusable, repair_normals, use_all_vertices};
+use std::iter;
+
+pub use report::SanitizeReport;
+
+/// Fraction of triangles that may vanish by rounding without a warning. Fine models lose some.
+const MAX_LOST: f64 = 0.01;
+
+/// Repairs the draft, and moves a camera with `fits`; returns the report and the local coordinates.
+pub(crate) fn sanitize(
+    draft: &mut Draft,
+    log: &mut Log,
+) -> Result<(SanitizeReport, LocalCoordinates), SceneError> {
+    let mut report = SanitizeReport::default();
+    for mesh in &mut draft.meshes {
+        drop_unusable(mesh, &mut report);
+    }
+    drop_coincident_emitters(draft, &draft.main_file(), log)?;
+    let coordinates = LocalCoordinates::of(draft);
+    let (mut lost, mut triangles) = (0, 0);
+    for mesh in &mut draft.meshes {
+        triangles += mesh.triangles.len();
+        lost += drop_rounded(mesh, &coordinates, &mut report);
+        use_all_vertices(mesh);
+        repair_normals(mesh, &mut report);
+        let bad_uvs = mesh.uvs.iter_mut().filter(|uv| !uv.is_finite());
+        report.bad_uvs += bad_uvs.map(|uv| *uv = Vec2::ZERO).count();
+        report.turned += mesh.turned;
+    }
+    if lost as f64 > MAX_LOST * triangles as f64 {
+        let what = format!(
+            "{lost} triangles are too small for their distance from the camera or the scene's middle"
+        );
+        log.warn(&draft.main_file(), what, "they are left out; move what lies far apart closer together")?;
+    }
+    for mesh in draft.meshes.iter().filter(|mesh| mesh.triangles.is_empty() && mesh.emission.is_some()) {
+        let what = format!("the emitter \"{}\" has no triangle with an area", mesh.name);
+        log.warn(&draft.main_file(), what, "it gives no light; repair its mesh or transform")?;
+    }
+    let before = draft.meshes.len();
+    draft.meshes.retain(|mesh| !mesh.triangles.is_empty());
+    report.empty_meshes = before - draft.meshes.len();
+    let main_file = draft.main_file();
+    let place = |i: usize| draft.material_places.get(i).unwrap_or(&main_file);
+    for (i, material) in draft.scene.materials.iter_mut().enumerate() {
+        let checked = check_material(material, &mut draft.scene.textures, place(i), &mut report, log);
+        log.part(checked);
+    }
+    if let Some(texture) = draft.scene.textures.iter().find(|texture| !texture.to_uv.is_finite()) {
+        let what = format!("the picture \"{}\" is moved or scaled beyond all numbers", texture.name);
+        log.part::<()>(Err(draft.main_file().wrong(what, "correct its transform")));
+    }
+    framing::frame(draft, coordinates.centre);
+    let place = draft.main_file();
+    let mut cameras = iter::once(&draft.shot.camera).chain(&draft.shot.path);
+    let checked = cameras.try_for_each(|camera| check_camera(camera, &coordinates, &place));
+    log.part(checked);
+    let checked = check_lights(draft, &coordinates, &mut report);
+    log.conclude(checked)?;
+    Ok((report, coordinates))
+}
+
+#[cfg(test)]
+mod tests;

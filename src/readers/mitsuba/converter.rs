@@ -1,0 +1,71 @@
+//! A plan under construction from Mitsuba XML.
+
+use super::tree::{ChildObject, Object, SceneXml};
+use crate::error::{Location, Log, SceneError};
+use crate::file::folder_of;
+use crate::plan::Contents;
+use glam::DMat4;
+use scene::MaterialId;
+use std::path::PathBuf;
+use std::rc::Rc;
+
+/// A plan under construction. The other modules add what an object describes.
+pub(super) struct Converter<'a> {
+    pub document: &'a SceneXml,
+    /// Folder to which file names are relative.
+    pub folder: PathBuf,
+    pub log: &'a mut Log,
+    pub contents: Contents,
+    /// Material of each BSDF object.
+    pub material_of: Vec<(*const Object, MaterialId)>,
+    pub default_materials: [Option<MaterialId>; 2],
+    /// Spectrum files read, with their hashes.
+    pub sources: Vec<(PathBuf, u64)>,
+    /// Number of meshes that instances place, and location of the first instance.
+    pub instances: (usize, Option<Location>),
+}
+
+impl Converter<'_> {
+    /// Adds all objects of the scene. Errors go to the log.
+    pub fn scene(&mut self) {
+        let document = self.document;
+        for child in &document.root.children {
+            let converted = self.part(child);
+            self.log.part(converted);
+        }
+    }
+
+    fn part(&mut self, child: &ChildObject) -> Result<(), SceneError> {
+        let object = self.document.object(child)?;
+        match object.tag.as_str() {
+            "shape" => self.shape(&object, DMat4::IDENTITY),
+            "emitter" => self.scene_emitter(&object),
+            // `shot` reads sensors and integrators. The others are read where an object refers to them.
+            "sensor" | "integrator" | "bsdf" | "texture" | "scene" => Ok(()),
+            tag => self.log.warn(&object.place, format!("<{tag}> is not modelled"), "it is ignored"),
+        }
+    }
+
+    /// Returns the path of a file named by `object`.
+    pub fn file(&self, object: &Object, name: &str) -> Result<PathBuf, SceneError> {
+        let missing = || {
+            let what = format!("{} \"{}\" names no file", object.tag, object.plugin);
+            object.place.wrong(what, format!("add <string name=\"{name}\" value=\"...\"/>"))
+        };
+        // Descriptions written on Windows separate folders by backslashes.
+        Ok(self.beside(&object.string(name)?.ok_or_else(missing)?, &object.place))
+    }
+
+    /// Returns the path of the file `name`: beside the main file, or beside the file at `place` if only that exists.
+    pub fn beside(&self, name: &str, place: &Location) -> PathBuf {
+        let file = name.replace('\\', "/");
+        let beside_main = self.folder.join(&file);
+        let beside_own = folder_of(&place.path).join(&file);
+        if !beside_main.exists() && beside_own.exists() { beside_own } else { beside_main }
+    }
+
+    /// Returns the children of `object` with tag `tag`.
+    pub fn tagged(&self, object: &Object, tag: &str) -> Result<Vec<Rc<Object>>, SceneError> {
+        self.document.tagged(object, tag)
+    }
+}

@@ -1,0 +1,42 @@
+//! Options for reading a scene.
+
+use crate::error::{Location, SceneError};
+use crate::file::fnv1a;
+use std::path::Path;
+
+/// Options for reading a scene.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct LoadOptions {
+    /// True if warnings of [`Severity::Warning`] are errors.
+    pub strict: bool,
+    /// Number, counted from 1, or name of the camera to use. `None` stands for the first.
+    pub camera: Option<String>,
+    /// Names and values of a Mitsuba scene's `$parameters`. They replace the defaults of the scene.
+    pub parameters: Vec<(String, String)>,
+}
+
+impl LoadOptions {
+    /// Rejects parameters, and any camera but the first, for formats with one camera.
+    pub(crate) fn no_choice(&self, path: &Path) -> Result<(), SceneError> {
+        self.no_parameters(path)?;
+        let Some(camera) = self.camera.as_deref().filter(|camera| *camera != "1") else { return Ok(()) };
+        let remedy = "a TOML scene has one: leave --camera out, which chooses among those of a Mitsuba scene (.xml) or a \
+                      glTF model";
+        Err(Location::file(path).no_camera(camera, remedy))
+    }
+
+    /// Rejects parameters, for formats without parameters.
+    pub(crate) fn no_parameters(&self, path: &Path) -> Result<(), SceneError> {
+        let Some((name, _)) = self.parameters.first() else { return Ok(()) };
+        let remedy = "leave --define out; it gives values to parameters that a Mitsuba scene (.xml) declares";
+        Err(Location::file(path).wrong(format!("there is no parameter \"{name}\""), remedy))
+    }
+
+    /// Returns the hash of a scene with these options; `files` is the hash of its files.
+    pub(crate) fn hash(&self, files: u64) -> u64 {
+        if self.camera.is_none() && self.parameters.is_empty() {
+            return files;
+        }
+        fnv1a(format!("{files} {:?} {:?}", self.camera, self.parameters).as_bytes())
+    }
+}

@@ -1,0 +1,303 @@
+//! Opening of all files of a plan, in parallel.
+//!
+//! Each file is read once. Results are in the order of the description, and so are errors.
+
+use crate::budget::{TriangleBudget, lacking};
+use crate::decode::{self, Channel, DecodedImage};
+use crate::draft::{Draft, DraftMesh};
+use crate::error::{Location, Log, SceneError};
+use crate::file::{fnv1a, read_file};
+use crate::mesh::{self, RawMesh};
+use crate::plan::{
+    Appearance, Contents, EnvironmentPlan, ImageSource, MaterialPlan, MeshPlan, MeshSource, ScenePlan,
+    TexturePlan, TextureSource,
+};
+use base::math::Rgb;
+use glam::{DMat3, DMat4};
+use rayon::prelude::*;
+use scene::requirements::ENVIRONMENT_TEXEL_BYTES;
+use scene::{Environment, EnvironmentMap, Scene, Texture};
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+/// Bytes per texel that are copied while an environment is built.
+const COPY_BYTES: u64 = 12;
+
+/// Use of a file's bytes.
+enum Task<'a> {
+    Mesh(usize, &'a MeshPlan),
+    Texture(usize, &'a TexturePlan, Channel),
+    Environment(&'a Location),
+}
+
+enum Done {
+    Meshes(usize, Vec<DraftMesh>),
+    Texture(usize, DecodedImage),
+    Environment(DecodedImage),
+}
+
+/// Content of all files of a plan.
+struct ReadFiles {
+    /// Files read, in the order of the description.
+    sources: Vec<PathBuf>,
+    /// Hashes of the files' bytes.
+    hashes: Vec<u64>,
+    /// Meshes of each mesh plan.
+    meshes: Vec<Vec<DraftMesh>>,
+    /// Image of each texture plan.
+    images: Vec<Option<DecodedImage>>,
+    environment: Option<DecodedImage>,
+}
+
+impl ScenePlan {
+    /// Opens every file; returns the draft, and the hash over the bytes of all files.
+    pub fn realise(self, log: &mut Log) -> Result<(Draft, u64), SceneError> {
+        let ReadFiles { sources, hashes, mut meshes, mut images, environment } = self.read_files()?;
+        let contents = self.contents;
+        contents.place_meshes(&mut meshes, log)?;
+        contents.decode_embedded(&mut images)?;
+        let textures = contents.textures.into_iter().zip(images).filter_map(|(t, p)| texture(t, p)).collect();
+        let environment = match contents.environment {
+            Some(plan) => plan.realise(environment)?,
+            None => None,
+        };
+        let scene = Scene {
+            name: self.name,
+            sources,
+            max_depth: self.max_depth,
+            hides_emitters: self.hides_emitters,
+            materials: contents.materials,
+            textures,
+            environment,
+            discs: contents.discs,
+            ..Scene::default()
+        };
+        let draft = Draft {
+            scene,
+            shot: self.shot,
+            meshes: meshes.into_iter().flatten().collect(),
+            lights: contents.lights,
+            material_places: contents.material_places,
+        };
+        let bytes: Vec<u8> = hashes.iter().flat_map(|h| h.to_le_bytes()).collect();
+        Ok((draft, fnv1a(&bytes)))
+    }
+
+    fn read_files(&self) -> Result<ReadFiles, SceneError> {
+        let files = self.contents.tasks();
+        let outcomes: Vec<Result<(u64, Vec<Done>), SceneError>> =
+            files.par_iter().map(|(path, tasks)| use_file(path, tasks, &self.contents.budget)).collect();
+        let mut read = ReadFiles {
+            sources: self.sources.iter().map(|s| s.0.clone()).collect(),
+            hashes: self.sources.iter().map(|s| s.1).collect(),
+            meshes: vec![Vec::new(); self.contents.meshes.len()],
+            images: vec![None; self.contents.textures.len()],
+            environment: None,
+        };
+        let mut errors = Vec::new();
+        for ((path, _), outcome) in files.iter().zip(outcomes) {
+            match outcome {
+                Ok((hash, done)) => {
+                    read.sources.push(path.to_path_buf());
+                    read.hashes.push(hash);
+                    done.into_iter().for_each(|done| read.take(done));
+                }
+                Err(error) => errors.push(error),
+            }
+        }
+        if errors.is_empty() { Ok(read) } else { Err(SceneError::all(errors)) }
+    }
+}
+
+impl ReadFiles {
+    fn take(&mut self, done: Done) {
+        match done {
+            Done::Meshes(i, meshes) => self.meshes[i] = meshes,
+            Done::Texture(i, image) => self.images[i] = Some(image),
+            Done::Environment(image) => self.environment = Some(image),
+        }
+    }
+}
+
+impl EnvironmentPlan {
+    /// Returns the environment; `picture` is the decoded image of a map.
+    fn realise(self, image: Option<DecodedImage>) -> Result<Option<Environment>, SceneError> {
+        Ok(match (self, image) {
+            (EnvironmentPlan::Constant(radiance), _) => Some(Environment::Constant(radiance)),
+            (EnvironmentPlan::Map { place, scale, to_world, .. }, Some(image)) => {
+                let map = environment_map(image, scale, &to_world);
+                let map = map.ok_or_else(|| {
+                    let remedy = "give a factor of 0 or more that leaves the picture's values finite";
+                    place.wrong(format!("the environment's scale is {scale}"), remedy)
+                })?;
+                Some(Environment::Map(map))
+            }
+            (EnvironmentPlan::Map { .. }, None) => None,
+            (EnvironmentPlan::Sky(sky), _) => sky.map().map(Environment::Map),
+        })
+    }
+}
+
+impl Contents {
+    /// Returns the tasks of each file; files are in the order of their first mention.
+    fn tasks(&self) -> Vec<(&Path, Vec<Task<'_>>)> {
+        let mut files: Vec<(&Path, Vec<Task>)> = Vec::new();
+        let mut by_path: BTreeMap<&Path, usize> = BTreeMap::new();
+        let mut add = |path, task| {
+            let at = *by_path.entry(path).or_insert_with(|| {
+                files.push((path, Vec::new()));
+                files.len() - 1
+            });
+            files[at].1.push(task);
+        };
+        for (i, mesh) in self.meshes.iter().enumerate() {
+            match &mesh.geometry {
+                MeshSource::Obj(path, _) | MeshSource::Ply(path) | MeshSource::Serialized(path, _) => {
+                    add(path, Task::Mesh(i, mesh));
+                }
+                MeshSource::Ready(_) | MeshSource::Shared(_) => {}
+            }
+        }
+        for (i, texture) in self.textures.iter().enumerate() {
+            match &texture.image {
+                TextureSource::File { path, raw } => {
+                    let channel = if *raw { Channel::Data } else { Channel::Colour };
+                    add(path, Task::Texture(i, texture, channel));
+                }
+                TextureSource::Part { source: ImageSource::File(path), channel, .. } => {
+                    add(path, Task::Texture(i, texture, *channel));
+                }
+                TextureSource::Ready(..) | TextureSource::Part { .. } => {}
+            }
+        }
+        if let Some(EnvironmentPlan::Map { place, path, .. }) = &self.environment {
+            add(path, Task::Environment(place));
+        }
+        files
+    }
+
+    /// Places the meshes that no file holds, and warns of files without triangles.
+    fn place_meshes(&self, meshes: &mut [Vec<DraftMesh>], log: &mut Log) -> Result<(), SceneError> {
+        for (plan, made) in self.meshes.iter().zip(meshes) {
+            match &plan.geometry {
+                MeshSource::Ready(raw) => *made = finish_mesh(plan, raw.clone()),
+                MeshSource::Shared(raw) => *made = finish_mesh(plan, RawMesh::clone(raw)),
+                MeshSource::Obj(path, _) | MeshSource::Ply(path) | MeshSource::Serialized(path, _) => {
+                    if made.iter().all(|mesh| mesh.triangles.is_empty()) {
+                        let what = format!("no triangles or polygons are found in {}", path.display());
+                        log.warn(&plan.place, what, "the mesh is left out; repair or re-export it")?;
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Decodes the images that are part of a description.
+    fn decode_embedded(&self, images: &mut [Option<DecodedImage>]) -> Result<(), SceneError> {
+        let decode = |(plan, image): (&TexturePlan, &mut Option<DecodedImage>)| {
+            if let TextureSource::Part { source: ImageSource::Bytes(bytes), channel, name } = &plan.image {
+                *image = Some(decode::decode(bytes, *channel, Path::new(name), &plan.place)?);
+            }
+            Ok(())
+        };
+        self.textures.par_iter().zip(images).try_for_each(decode)
+    }
+}
+
+fn use_file(path: &Path, tasks: &[Task], budget: &TriangleBudget) -> Result<(u64, Vec<Done>), SceneError> {
+    let from = match tasks.first() {
+        Some(Task::Mesh(_, plan)) => &plan.place,
+        Some(Task::Texture(_, plan, _)) => &plan.place,
+        Some(Task::Environment(place)) => place,
+        None => return Ok((0, Vec::new())),
+    };
+    let bytes = read_file(path, from)?;
+    let hash = fnv1a(&bytes);
+    let done: Vec<Result<Done, SceneError>> =
+        tasks.par_iter().map(|task| perform(task, &bytes, path, budget)).collect();
+    Ok((hash, done.into_iter().collect::<Result<_, _>>()?))
+}
+
+fn perform(task: &Task, bytes: &[u8], path: &Path, budget: &TriangleBudget) -> Result<Done, SceneError> {
+    Ok(match task {
+        Task::Mesh(i, plan) => {
+            let raw = match &plan.geometry {
+                MeshSource::Obj(_, selection) => mesh::obj::read(bytes, path, selection)?,
+                MeshSource::Ply(_) => mesh::ply::read(bytes, path)?,
+                MeshSource::Serialized(_, index) => mesh::serialized::read(bytes, *index, path)?,
+                MeshSource::Ready(raw) => raw.clone(),
+                MeshSource::Shared(raw) => RawMesh::clone(raw),
+            };
+            budget.take(raw.triangles.len(), &plan.place)?;
+            Done::Meshes(*i, finish_mesh(plan, raw))
+        }
+        Task::Texture(i, plan, channel) => {
+            Done::Texture(*i, decode::decode(bytes, *channel, path, &plan.place)?)
+        }
+        Task::Environment(place) => {
+            let image = decode::decode(bytes, Channel::Colour, path, place)?;
+            let DecodedImage { width, height, .. } = image;
+            if let Some(lack) = lacking((width * height) as u64 * (ENVIRONMENT_TEXEL_BYTES + COPY_BYTES)) {
+                let what = format!("{}: light of its {width} x {height} texels takes {lack}", path.display());
+                return Err(place.wrong(what, decode::SMALLER));
+            }
+            Done::Environment(image)
+        }
+    })
+}
+
+fn finish_mesh(plan: &MeshPlan, raw: RawMesh) -> Vec<DraftMesh> {
+    let parts = match &plan.material {
+        MaterialPlan::One(material) => {
+            vec![(plan.name.clone(), Appearance { material: *material, emission: None }, raw)]
+        }
+        MaterialPlan::ByName(appearances, other) => {
+            let parts = mesh::obj::split_by_material(raw).into_iter();
+            let unknown = Appearance { material: *other, emission: None };
+            let appearance = |name: &str| appearances.get(name).copied().unwrap_or(unknown);
+            parts.map(|(name, part)| (format!("{}:{name}", plan.name), appearance(&name), part)).collect()
+        }
+    };
+    let finish = |(name, appearance, raw): (String, Appearance, RawMesh)| {
+        let placed = mesh::place(raw, &plan.placement);
+        DraftMesh {
+            name,
+            material: appearance.material,
+            emission: plan.emission.or(appearance.emission),
+            ..placed
+        }
+    };
+    parts.into_iter().map(finish).collect()
+}
+
+fn texture(plan: TexturePlan, decoded: Option<DecodedImage>) -> Option<Texture> {
+    let (name, image) = match plan.image {
+        TextureSource::File { path, .. } => {
+            let name = path.file_name().map(|n| n.to_string_lossy().into_owned());
+            (name.unwrap_or_default(), decoded?)
+        }
+        TextureSource::Ready(name, image) => (name, image),
+        TextureSource::Part { name, .. } => (name, decoded?),
+    };
+    let DecodedImage { width, height, texels } = image;
+    Some(Texture { name, width, height, texels, filter: plan.filter, wrap: plan.wrap, to_uv: plan.to_uv })
+}
+
+/// Returns the map times `scale`; `None` if its values become negative or infinite.
+///
+/// As in Mitsuba, the last row is repeated until there are 3 rows.
+fn environment_map(image: DecodedImage, scale: f32, to_world: &DMat4) -> Option<EnvironmentMap> {
+    let DecodedImage { width, height, texels } = image;
+    if !(scale >= 0.0 && texels.all(|texel| !texel.is_finite() || (texel * scale).is_finite())) {
+        return None;
+    }
+    let mut radiance: Vec<Rgb> = texels.iter().map(|texel| texel * scale).collect();
+    let last: Vec<Rgb> = radiance[radiance.len() - width..].to_vec();
+    for _ in height..3 {
+        radiance.extend_from_slice(&last);
+    }
+    // Readers have checked that the matrix is a rotation or reflection, so the transpose is the inverse.
+    let to_local = DMat3::from_mat4(*to_world).transpose().as_mat3();
+    Some(EnvironmentMap { width, height: height.max(3), radiance, to_local })
+}
