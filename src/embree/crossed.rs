@@ -23,7 +23,7 @@ impl Accel {
     }
 }
 
-/// Filter of single rays. It accepts a candidate if `Visit` returns false.
+/// Accepts a candidate of a single ray if `Visit` returns false.
 ///
 /// # Safety
 /// For Embree to call during a query whose context is the head of a `Query<&mut Visit>`.

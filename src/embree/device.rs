@@ -142,7 +142,7 @@ impl ErrorLog {
     }
 }
 
-/// Error callback. Embree calls it from any thread.
+/// Records an error. Embree calls this callback from any thread.
 unsafe extern "C" fn record_error(log: *mut c_void, code: sys::RTCError, message: *const c_char) {
     // SAFETY: `log` is the registered pointer, to a live `ErrorLog` that is only ever shared.
     let log = unsafe { &*log.cast::<ErrorLog>() };

@@ -137,7 +137,7 @@ impl Accel {
     }
 }
 
-/// Filter of single rays.
+/// Records the occluder of a single ray, as a filter.
 ///
 /// # Safety
 /// For Embree to call during a query whose context is the head of a `Query<Occluder>`.
@@ -156,14 +156,14 @@ unsafe extern "C" fn record_occluder(arguments: *const sys::RTCFilterFunctionNAr
     }
 }
 
-/// Filter of a packet of sixteen.
+/// Records the occluders of a packet of sixteen, as a filter.
 ///
 /// The filter processes and blends all lanes, so that it compiles to vector instructions. A loop over the valid lanes
 /// costs several times as much.
 ///
 /// # Safety
-/// For Embree to call during a query whose context is the head of a `Query<&mut Occluders16>` and whose rays
-/// carry their lane as their id.
+/// For Embree to call during a query whose context is the head of a `Query<&mut Occluders16>`. The rays carry their
+/// lane as their id.
 unsafe extern "C" fn record_occluders(arguments: *const sys::RTCFilterFunctionNArguments) {
     // SAFETY: Embree passes valid arguments; the context is that of the query, alive and not borrowed
     // elsewhere while the query runs on this thread.
@@ -203,7 +203,7 @@ fn blend(mask: u32, new: u32, old: u32) -> u32 {
     (mask & new) | (!mask & old)
 }
 
-/// Filter of parts of a packet, for processors without sixteen-wide kernels. The ray's id is its lane.
+/// Records occluders of a split packet, for processors without sixteen-wide kernels. The ray's id is its lane.
 ///
 /// # Safety
 /// As for [`record_occluders`], from which it is called.

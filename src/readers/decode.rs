@@ -199,7 +199,7 @@ fn linear(encoded: f32, raw: bool) -> f32 {
     if raw { encoded } else { srgb_to_linear(encoded) }
 }
 
-/// Inverse of the sRGB transfer function (IEC 61966-2-1).
+/// Converts an sRGB value to linear (IEC 61966-2-1).
 pub(crate) fn srgb_to_linear(encoded: f32) -> f32 {
     if encoded <= 0.04045 { encoded / 12.92 } else { ((encoded + 0.055) / 1.055).powf(2.4) }
 }
@@ -251,7 +251,7 @@ mod tests {
         assert!(decode_file(&exr, false, "sky.exr").is_err());
     }
 
-    /// A Radiance picture of one colour, run-length encoded.
+    /// Returns a Radiance image of one colour, run-length encoded.
     fn radiance(width: u16, height: usize) -> Vec<u8> {
         let mut row = [&[2, 2][..], &width.to_be_bytes()].concat();
         for channel in [128, 64, 32, 129] {

@@ -120,7 +120,7 @@ impl ReadFiles {
 }
 
 impl EnvironmentPlan {
-    /// Returns the environment; `picture` is the decoded image of a map.
+    /// Returns the environment; `image` is the decoded image of a map.
     fn realise(self, image: Option<DecodedImage>) -> Result<Option<Environment>, SceneError> {
         Ok(match (self, image) {
             (EnvironmentPlan::Constant(radiance), _) => Some(Environment::Constant(radiance)),

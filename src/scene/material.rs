@@ -1,8 +1,8 @@
 //! Scattering of a surface: a Lambert base, up to three lobes above it, and an optional clear coat.
 //!
 //! Every material of the supported formats is such a combination. For instance, `plastic` is a base under a coat with a
-//! mirror lobe, `roughplastic` a base under a coat with a rough lobe, and `conductor` a mirror lobe alone.
-//! [`Principled`] has parameters of its own. Any material may have an opacity ([`Material::opacity`]).
+//! mirror lobe, and `conductor` a mirror lobe alone. [`Principled`] has parameters of its own. Any material may have an
+//! opacity ([`Material::opacity`]).
 
 use super::parameter::{Reflectance, Roughness, Share};
 use super::principled::Principled;

@@ -8,7 +8,7 @@
 //!
 //! The density is the filter's convolution with the inverse of (-a, 1 + 2a, -a), clipped at [`REACH`] and at 0. The
 //! constant a minimises the mean square difference that clipping leaves. Relative to the filter's norm, the difference
-//! is 0.09 % for Mitchell and Netravali, 0.2 % for Catmull and Rom, and 2.8 % for Lanczos with three lobes.
+//! is at most 0.2 % for cubics, and 2.8 % for Lanczos with three lobes.
 //!
 //! Papers: M. Ernst, M. Stamminger, G. Greiner, *Filter Importance Sampling*, 2006; D. Mitchell, A. Netravali,
 //! *Reconstruction Filters in Computer Graphics*, 1988. F. Harris, *On the Use of Windows for Harmonic Analysis with

@@ -137,7 +137,7 @@ mod tests {
         }
     }
 
-    /// Every elementary interval of area 2^-m holds exactly one of any aligned run of 2^m points.
+    /// Asserts that every elementary interval of area 2^-m contains exactly one point of any aligned run of 2^m points.
     #[test]
     fn runs_are_nets_in_base_two() {
         let m = 8;

@@ -69,7 +69,7 @@ mod tests {
         }
     }
 
-    /// First and second moments against their integrals.
+    /// Asserts that the first and second moments equal their integrals.
     #[test]
     fn moments_match() {
         let n = 1 << 16;

@@ -1,7 +1,7 @@
 //! Division of triangles that are very large compared with the camera's surroundings.
 //!
-//! The precision of a point on a triangle is relative to the triangle's size. On a floor a million times as large as
-//! the objects on it, points would be off by up to a tenth of an object's size.
+//! The precision of a point on a triangle is relative to the triangle's size. Suppose that a floor is a million times
+//! as large as an object on it. Points on the floor would then be off by up to a tenth of the object's size.
 //!
 //! Edges are halved until they are at most a multiple of their distance from the camera. The decision depends on the
 //! ends of an edge only. So triangles that share an edge divide it alike, and no gap opens between them.

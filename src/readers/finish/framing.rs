@@ -30,7 +30,7 @@ pub fn frame(draft: &mut Draft, centre: DVec3) {
     let camera = &mut draft.shot.camera;
     let tan = (1.0 - MARGIN) * camera.tan_half_x * DVec2::new(1.0, height / width);
     // A point p is within the film's right edge if p·right - x <= tan (p·forward + d), for the camera's offset x and
-    // distance d behind the centre; likewise for the other edges.
+    // distance d behind the centre. The other edges are alike.
     let (mut high, mut low) = (DVec2::NEG_INFINITY, DVec2::NEG_INFINITY);
     for p in draft.meshes.iter().flat_map(|mesh| &mesh.positions).map(|p| p - centre) {
         let (across, depth) = (DVec2::new(p.dot(camera.right), p.dot(camera.up)), p.dot(camera.forward));
