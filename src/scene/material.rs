@@ -172,8 +172,9 @@ pub enum Lobe {
     Dielectric {
         /// Interior over exterior index of refraction; the interior is behind the normal.
         eta: f32,
-        /// True for a sheet with two interfaces close to each other. Light passes straight, with all internal
-        /// reflections.
+        /// True for a sheet with two interfaces close to each other.
+        ///
+        /// Transmitted light goes straight on, after any number of internal reflections.
         thin: bool,
         /// Factor on reflection.
         reflectance: Reflectance,

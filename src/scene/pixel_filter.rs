@@ -37,7 +37,7 @@ pub enum PixelFilter {
     },
     /// Window of Blackman and Harris of four terms, three pixels wide.
     BlackmanHarris,
-    /// Returns the cubic of Mitchell and Netravali at distance `x`.
+    /// Cubic of Mitchell and Netravali with B = C = 1/3, four pixels wide.
     Mitchell,
     /// Interpolating cubic of Catmull and Rom, four pixels wide.
     CatmullRom,

@@ -94,10 +94,7 @@ impl ExrFile {
         self.join(self.find(name, &LAYER).ok_or_else(|| self.missing(format!("layer `{name}`")))?)
     }
 
-    /// Returns the unsigned integers of the channel `name`.
-    ///
-    /// # Errors
-    /// If there is no such channel.
+    /// Returns the unsigned integers of the channel `name`, if there is one.
     pub fn numbers(&self, name: &str) -> Option<Image<u32>> {
         let part = self.parts.layer_data.first()?;
         let channel = part.channel_data.list.iter().find(|channel| text(&channel.name) == name)?;

@@ -82,7 +82,7 @@ impl Image {
         self.pixels.iter().all(|pixel| *pixel == Rgb::ZERO)
     }
 
-    /// Replaces every non-finite number by 0; returns their number.
+    /// Replaces every non-finite channel by 0; returns their number.
     pub fn remove_nonfinite(&mut self) -> u64 {
         remove_nonfinite(self.pixels.iter_mut().flat_map(|pixel| pixel.as_mut()))
     }

@@ -27,7 +27,7 @@ impl From<TriangleId> for (u32, u32) {
     }
 }
 
-/// Returns three meshes of unconnected triangles in a cube; the middle one is empty.
+/// Three meshes of unconnected triangles in a cube; the middle one is empty.
 pub struct Soup {
     meshes: [(Vec<Vec3>, Vec<[u32; 3]>); 3],
 }

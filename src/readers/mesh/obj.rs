@@ -11,7 +11,6 @@
 //! - Reading ends at bytes that are not UTF-8, at a `vt` of one number, and at colours on some vertices.
 //! - A face of two corners is no error.
 //! - It splits the mesh at `o`, `g` and `usemtl`, so vertices are no longer shared and smooth normals change.
-//!
 
 use super::{RawMesh, polygon};
 use crate::error::{Location, SceneError};

@@ -16,7 +16,7 @@ const SPACING: f64 = 5.0;
 /// Number of wavelengths at which a spectrum is evaluated, as in Mitsuba.
 const STEPS: usize = 1000;
 
-/// Converts CIE XYZ to linear Rec. 709.
+/// Matrix from CIE XYZ to linear Rec. 709.
 const XYZ_TO_RGB: DMat3 = DMat3::from_cols(
     DVec3::new(3.240479, -0.969256, 0.055648),
     DVec3::new(-1.537150, 1.875991, -0.204043),

@@ -10,7 +10,7 @@ use super::super::Image;
 use glam::DVec3;
 use serde::Serialize;
 
-/// Returns the probability that a standard normal variable is at least `z` away from 0.
+/// Probability of any false alarm among all pixels.
 pub const SIGNIFICANCE: f64 = 0.01;
 /// Fraction of the tests that have to pass.
 pub const SHARE_REQUIRED: f64 = 0.9975;

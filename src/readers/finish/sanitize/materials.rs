@@ -49,7 +49,7 @@ pub(super) fn check_material(
     scale_sum(material, place, report, log)
 }
 
-/// Checks of the parts of one material.
+/// Checker of the parts of one material.
 struct MaterialChecks<'a> {
     name: String,
     place: &'a Location,
