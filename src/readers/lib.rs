@@ -81,7 +81,7 @@ pub fn load(path: &Path, options: &LoadOptions) -> Result<Loaded, SceneError> {
     divide::divide(&mut draft, &coordinates);
     let (scene, cameras) = recentre::recentre(draft, &coordinates);
     if scene.is_dark() {
-        let fallback = "the picture will be black; add an emitter, a light or an environment";
+        let fallback = "the image will be black; add an emitter, a light or an environment";
         log.warn(&Location::file(path), "the scene has no light that is modelled", fallback)?;
     }
     Ok(Loaded { scene, cameras, warnings: log.into_warnings(), repairs, hash })

@@ -127,7 +127,7 @@ impl EnvironmentPlan {
             (EnvironmentPlan::Map { place, scale, to_world, .. }, Some(image)) => {
                 let map = environment_map(image, scale, &to_world);
                 let map = map.ok_or_else(|| {
-                    let remedy = "give a factor of 0 or more that leaves the picture's values finite";
+                    let remedy = "give a factor of 0 or more that leaves the image's values finite";
                     place.wrong(format!("the environment's scale is {scale}"), remedy)
                 })?;
                 Some(Environment::Map(map))

@@ -16,7 +16,7 @@ pub enum ImageError {
         error: io::Error,
     },
     /// The file is not a supported OpenEXR image.
-    #[error("{} is not a readable OpenEXR picture: {reason}", path.display())]
+    #[error("{} is not a readable OpenEXR image: {reason}", path.display())]
     Decode {
         /// The file.
         path: PathBuf,

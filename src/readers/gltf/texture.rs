@@ -105,7 +105,9 @@ impl Importer<'_> {
             },
             (None, Some(view)) => ImageSource::Bytes(self.document.view(view)?.into()),
             (None, None) => {
-                return Err(self.document.wrong(format!("image {} has no picture", index.value())));
+                return Err(self
+                    .document
+                    .wrong(format!("image {} has neither a URI nor a buffer view", index.value())));
             }
         };
         self.images.insert(index.value(), source.clone());

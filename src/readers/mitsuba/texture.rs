@@ -31,7 +31,7 @@ impl Converter<'_> {
             Some((Reflectance::Constant(colour), _)) => Ok(Some(colour)),
             Some((Reflectance::Textured { .. }, object)) => Err(object
                 .place
-                .wrong(format!("a picture stands for \"{name}\""), "give an <rgb> or a <spectrum>")),
+                .wrong(format!("an image stands for \"{name}\""), "give an <rgb> or a <spectrum>")),
             None => Ok(colour),
         }
     }

@@ -18,7 +18,7 @@ impl ColourText {
     /// If the colour is an image or not finite.
     pub fn rgb(&self, what: &str, place: &Location) -> Result<Rgb, SceneError> {
         let colour = self.constant(place)?;
-        let image = || place.wrong(format!("{what} is a picture"), "give a number, [r, g, b] or \"#rrggbb\"");
+        let image = || place.wrong(format!("{what} is an image"), "give a number, [r, g, b] or \"#rrggbb\"");
         let colour = colour.ok_or_else(image)?;
         let wrong = || place.wrong(format!("{what} is not finite"), "write finite numbers");
         colour.is_finite().then_some(colour).ok_or_else(wrong)

@@ -79,9 +79,9 @@ fn values(kind: &str) -> (Vec<&'static str>, Vec<&'static str>) {
         "vector" => (vec!["[1, 2.5, 3]"], vec!["1", "[1, 2]", "\"#ffffff\""]),
         "pair" => (vec!["[1, 2]"], vec!["1", "[1]"]),
         "colour" => (colours, vec!["true", "[1, 2]"]),
-        "colour or picture" => ([colours, images].concat(), vec!["true", "[1, 2]"]),
-        "picture" => (images, vec!["true", "0.5"]),
-        "number or picture" => ([vec!["0.5"], images].concat(), vec!["true", "[1, 2, 3]"]),
+        "colour or image" => ([colours, images].concat(), vec!["true", "[1, 2]"]),
+        "image" => (images, vec!["true", "0.5"]),
+        "number or image" => ([vec!["0.5"], images].concat(), vec!["true", "[1, 2, 3]"]),
         "moment" => (vec!["2024-06-21T12:00:00Z"], vec!["1", "\"noon\""]),
         "table" | "list of tables" | "list of numbers" => (vec![], vec!["true", "1"]),
         other => panic!("the page has no type \"{other}\""),
@@ -142,7 +142,7 @@ fn templates() -> Vec<(&'static str, String)> {
             mesh = [{ file = \"leaf.serialized\", material = \"m\", @ }]",
         ),
         of("`[[material]]`", "material = [{ name = \"m\", kind = \"diffuse\", reflectance = 0.5, @ }]"),
-        of("Pictures", "material = [{ name = \"m\", kind = \"diffuse\", reflectance = { @ } }]"),
+        of("Images", "material = [{ name = \"m\", kind = \"diffuse\", reflectance = { @ } }]"),
         of("`[environment]`", "environment = { file = \"a.png\", @ }"),
         of("`[sky]`", "sky = { date = 2024-06-21T12:00:00Z, place = [50, 10], @ }"),
     ]
@@ -199,7 +199,7 @@ fn the_page_lists_every_key_and_its_type() {
     check::<KeyText>("`[camera.path]`: `keys`");
     check::<MeshText>("`[[mesh]]`");
     check::<StepText>("`[[mesh]]`: `transform`");
-    check::<TextureText>("Pictures");
+    check::<TextureText>("Images");
     check::<EnvironmentText>("`[environment]`");
     check::<SkyText>("`[sky]`");
     for (kind, rows) in kinds("`[[material]]`") {
@@ -261,7 +261,7 @@ fn the_defaults_of_the_page_are_those_of_the_code() {
 }
 
 #[test]
-fn colours_are_the_same_everywhere_and_pictures_only_where_the_page_says() {
+fn colours_are_the_same_everywhere_and_images_only_where_the_page_says() {
     for (name, template, rows) in all_templates() {
         for row in rows.iter().filter(|row| row.kind.starts_with("colour")) {
             let template = match row.key {
@@ -279,7 +279,7 @@ fn colours_are_the_same_everywhere_and_pictures_only_where_the_page_says() {
             }
             assert!(of("\"#ffff\"").unwrap_err().contains("#rrggbb"));
             let image = of("\"a.png\"");
-            assert_eq!(image.is_ok(), row.kind == "colour or picture", "{name}: {} {image:?}", row.key);
+            assert_eq!(image.is_ok(), row.kind == "colour or image", "{name}: {} {image:?}", row.key);
         }
     }
 }

@@ -196,7 +196,7 @@ fn numbers_without_a_sense_are_refused_with_their_line() {
 }
 
 #[test]
-fn a_picture_that_its_factor_makes_infinite_is_an_error() {
+fn an_image_that_its_factor_makes_infinite_is_an_error() {
     let sky = fs::read(concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/scenes/valid/sky.exr")).unwrap();
     let text = format!("{HEAD}[environment]\nfile = \"sky.exr\"\nscale = 3e38\n");
     let message = load_with(&text, &[("sky.exr", &sky)]).unwrap_err();
@@ -346,7 +346,7 @@ fn wrong_paths_are_errors_with_line_and_remedy() {
 }
 
 #[test]
-fn pictures_stand_upright_on_a_rectangle() {
+fn images_stand_upright_on_a_rectangle() {
     let mut png = std::io::Cursor::new(Vec::new());
     // White above, black below.
     let image = image::RgbImage::from_fn(2, 2, |_, y| image::Rgb([if y == 0 { 255 } else { 0 }; 3]));

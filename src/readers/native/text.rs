@@ -153,7 +153,7 @@ pub(super) struct MaterialText {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(
     untagged,
-    expecting = "expected a number, [r, g, b], \"#rrggbb\", { colour = ..., scale = ... } or a picture"
+    expecting = "expected a number, [r, g, b], \"#rrggbb\", { colour = ..., scale = ... } or an image"
 )]
 pub(super) enum ColourText {
     Grey(Number),
@@ -173,7 +173,7 @@ pub(super) enum ColourText {
 #[serde(
     untagged,
     deny_unknown_fields,
-    expecting = "expected a number, a picture's name or { file = \"...\" }"
+    expecting = "expected a number, an image's name or { file = \"...\" }"
 )]
 pub(super) enum NumberText {
     Number(Number),
@@ -183,7 +183,7 @@ pub(super) enum NumberText {
 
 /// An image with or without options.
 #[derive(Clone, Debug, Deserialize)]
-#[serde(untagged, expecting = "expected a picture's name or { file = \"...\" }")]
+#[serde(untagged, expecting = "expected an image's name or { file = \"...\" }")]
 pub(super) enum MapText {
     File(String),
     Texture(TextureText),

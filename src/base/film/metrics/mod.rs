@@ -58,9 +58,9 @@ pub struct Variances<'a> {
 /// # Errors
 /// If the sizes of images differ.
 pub fn compare(test: &Image, reference: &Image, variances: Variances) -> Result<Comparison, ImageError> {
-    same_size("the two pictures differ in size", test, reference)?;
+    same_size("the two images differ in size", test, reference)?;
     for variance in [variances.test, variances.reference].into_iter().flatten() {
-        same_size("a variance and its picture differ in size", variance, reference)?;
+        same_size("a variance and its image differ in size", variance, reference)?;
     }
     let factor = tone::auto_factor(reference);
     let flip = flip_map(test, reference, factor);

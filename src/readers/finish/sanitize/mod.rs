@@ -71,7 +71,7 @@ pub(crate) fn sanitize(
         log.part(checked);
     }
     if let Some(texture) = draft.scene.textures.iter().find(|texture| !texture.to_uv.is_finite()) {
-        let what = format!("the picture \"{}\" is moved or scaled beyond all numbers", texture.name);
+        let what = format!("the image \"{}\" is moved or scaled beyond all numbers", texture.name);
         log.part::<()>(Err(draft.main_file().wrong(what, "correct its transform")));
     }
     framing::frame(draft, coordinates.centre);

@@ -279,7 +279,7 @@ fn strips_fans_quantised_and_sparse_positions_are_read() {
 }
 
 #[test]
-fn text_files_have_buffers_and_pictures_beside_them_or_inside() {
+fn text_files_have_buffers_and_images_beside_them_or_inside() {
     let mut model = Model::new();
     let mesh = model.square(None);
     model.node(json!({ "mesh": mesh }));
