@@ -5,6 +5,7 @@ use super::denoise_args::{DenoiseArgs, DenoiseFileArgs};
 use super::exit;
 use super::method_args::MethodArgs;
 use super::plan_args::{PlanArgs, Quality};
+use super::png_args::PngArgs;
 use super::values::{Bytes, Crop, ProgressMode, Resolution, counted, feature, q_scale};
 use base::film::Exposure;
 use clap::{Arg, ArgGroup, Args, CommandFactory, FromArgMatches, Parser, Subcommand, ValueEnum};
@@ -13,7 +14,7 @@ use render::session::Feature;
 use render::walk::{FileNames, FrameList, Q_SCALE, RetentionLimits};
 use std::ffi::OsString;
 use std::num::NonZeroUsize;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Global illumination by lightcuts over Intel Embree, with a path-traced reference.
 #[derive(Debug, Parser)]
@@ -228,30 +229,6 @@ pub struct BatchArgs {
     /// Form of the messages on standard error
     #[arg(long, value_enum, default_value_t = ProgressMode::Auto)]
     pub progress: ProgressMode,
-}
-
-/// Options of the tone-mapped image beside an OpenEXR file.
-#[derive(Clone, Debug, Default, Args)]
-pub struct PngArgs {
-    /// Tone-mapped image to write [default: the OpenEXR file with the extension .png]
-    #[arg(long, value_name = "FILE.png")]
-    png: Option<PathBuf>,
-    /// Do not write a tone-mapped image
-    #[arg(long, conflicts_with_all = ["png", "exposure"])]
-    no_png: bool,
-    /// Exposure of the PNG file in stops; `auto` maps the 90th percentile of luminance to 0.8
-    #[arg(long, value_name = "auto|EV", default_value_t, allow_negative_numbers = true)]
-    pub exposure: Exposure,
-}
-
-impl PngArgs {
-    /// Returns the file of the tone-mapped image beside `exr`; `None` if there is to be none.
-    pub fn file(&self, exr: &Path) -> Option<PathBuf> {
-        if self.no_png {
-            return None;
-        }
-        Some(self.png.clone().unwrap_or_else(|| exr.with_extension("png")))
-    }
 }
 
 /// Options of `merge`.

@@ -15,7 +15,7 @@ pub fn check_apart(entries: &[JobEntry]) -> Result<(), Failure> {
     // Walks by the name pattern of their files: the first walk of the whole path, and the first walk of listed frames.
     let mut walks: BTreeMap<PathBuf, [Option<&JobEntry>; 2]> = BTreeMap::new();
     for entry in entries {
-        // Other errors of an entry are reported when the entry is checked.
+        // The check of an entry reports its other errors.
         let (Ok(command), Ok(target)) = (entry.command(), atomic::resolve(&entry.output)) else { continue };
         let mut files = vec![target.clone()];
         if let Command::Walk(args) = command {

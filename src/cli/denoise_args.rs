@@ -1,8 +1,7 @@
 //! Options of denoising.
 
-use super::args::PngArgs;
-use super::exit;
-use super::exit::Failure;
+use super::exit::{self, Failure};
+use super::png_args::PngArgs;
 use anyhow::anyhow;
 use clap::{Args, ValueEnum};
 use render::denoise::Quality;

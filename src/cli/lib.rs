@@ -28,6 +28,7 @@ mod opened;
 mod outputs;
 mod picture;
 mod plan_args;
+mod png_args;
 mod progress;
 mod render;
 mod sheet;

@@ -180,8 +180,8 @@ impl Frames<'_> {
 
     /// Returns the factor on radiance in the PNG files; `None` if there are none.
     ///
-    /// It depends on frames of the whole path, so that every part of the walk has the same factor. `number` is the
-    /// frame that needs it.
+    /// The factor depends on frames of the whole path, so that every part of the walk has the same factor. `number` is
+    /// the frame that needs it.
     fn factor(&mut self, number: usize, view: &View) -> Result<Option<f32>, Failure> {
         let Some(exposure) = self.job.exposure.filter(|_| self.factor.is_none()) else {
             return Ok(self.factor);

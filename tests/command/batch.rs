@@ -71,7 +71,7 @@ fn what_fails_does_not_stop_the_others_and_the_exit_code_says_so() {
     assert_eq!(files, [&["crop.exr", "preview.png", "room.exr", "room.png"], &walk[..]].concat());
     let crop = ExrFile::read(&sandbox.path("out/crop.exr")).unwrap().window();
     assert_eq!((crop.offset, crop.width), ([4, 2], 8));
-    // The same by its own command.
+    // `render` gives an equal image.
     sandbox.render("alone.exr", &[]).expect(0);
     let color = |name| ExrFile::read(&sandbox.path(name)).unwrap().color().unwrap();
     assert_eq!(color("out/room.exr"), color("alone.exr"));

@@ -17,7 +17,7 @@ fn begun(sandbox: &Sandbox) -> Child {
     begun_by(sandbox, &Sandbox::path_tracing("100000000", &[]))
 }
 
-/// The same by any arguments.
+/// Starts a render with any arguments; returns once its first pixels are done.
 fn begun_by(sandbox: &Sandbox, arguments: &[&str]) -> Child {
     let mut child = sandbox
         .command(&[arguments, &["--progress", "ndjson"]].concat())

@@ -63,7 +63,7 @@ fn a_mesh_too_long_for_the_memory_there_is_is_not_begun() {
 #[test]
 fn pictures_too_large_for_the_memory_there_is_are_not_decoded() {
     let sandbox = Sandbox::new();
-    // Of one colour: a small file.
+    // A file of one colour is small.
     image::GrayImage::new(16_000, 16_000).save(sandbox.path("a.png")).unwrap();
     let texture = "[[material]]\nname = \"m\"\nkind = \"diffuse\"\nreflectance = { file = \"a.png\" }\n\
         [[mesh]]\nshape = \"cube\"\nmaterial = \"m\"\n";

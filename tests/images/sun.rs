@@ -54,7 +54,7 @@ fn shadows_of_a_wide_sun_are_soft() {
     let white = add_material(&mut scene, diffuse(Rgb::splat(0.5)));
     scene.meshes.push(quad(Vec3::new(-9.0, 0.0, 9.0), Vec3::X * 18.0, Vec3::NEG_Z * 18.0, white));
     let direction = sun(&mut scene, half_angle);
-    // Its edge lies at height 4, in the plane through the origin that holds the sun's centre and the z axis.
+    // The edge lies at height 4, in the plane through the origin that holds the sun's centre and the z axis.
     let edge = direction * (4.0 / direction.y);
     scene.meshes.push(quad(Vec3::new(edge.x, 4.0, -30.0), Vec3::Z * 60.0, Vec3::X * 40.0, white));
     let scene = world(scene);

@@ -70,7 +70,7 @@ fn errors_put_into_a_right_picture_are_measured_within_their_intervals() {
         assert!(found.relative_bias.covers(bias) && width(found.relative_bias) < 0.02, "{found:?}");
         let rms = rel_mse(&image, &truth, 0.0).sqrt();
         assert!(found.relative_rms.covers(rms) && width(found.relative_rms) < 0.6 * rms, "{found:?}");
-        // From 3 % to 30 % at exactly that share of the pixels.
+        // The error jumps from 3 % to 30 % at exactly that share of the pixels.
         assert!((0.02..0.31).contains(&found.relative_error_95.value), "{found:?}");
     }
 }

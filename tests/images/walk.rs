@@ -85,7 +85,7 @@ fn errors_of_the_last_frame(seed: u32) -> [f32; 2] {
     [error, error_alone]
 }
 
-/// By single seeds the ratio of the errors is between .9 and 1.2.
+/// The ratio of the errors of single seeds is between 0.9 and 1.2.
 #[test]
 fn frames_of_a_walk_are_as_right_as_alone_with_few_new_records() {
     let (mut error, mut error_alone) = (0.0, 0.0);

@@ -8,7 +8,7 @@ pub fn assert_sound(Loaded { scene, cameras, .. }: &Loaded) {
         let count = mesh.positions.len();
         assert!(mesh.positions.iter().all(|p| p.is_finite()));
         assert!(mesh.normals.is_empty() || mesh.normals.len() == count);
-        // Those within edges that were cut, which are of scenes with a vicinity alone, may be shorter.
+        // Normals within edges that were cut may be shorter. Only scenes with a vicinity have such edges.
         let shortest = if scene.vicinity > 0.0 { 0.0 } else { 1.0 };
         assert!(mesh.normals.iter().all(|n| n.length() > shortest - 1e-3 && n.length() < 1.0 + 1e-3));
         assert!(mesh.uvs.is_empty() || mesh.uvs.len() == count);

@@ -114,20 +114,26 @@ fn errors_in(scene: &str, family: Family) -> (Vec<f32>, Vec<f32>) {
     (single_errors, shared_errors)
 }
 
-mod slow_scenes {
-    use super::*;
-
-    #[test]
-    fn cuts_of_real_scenes_are_within_their_error() {
-        let rms = |e: &[f32]| (e.iter().map(|e| e * e).sum::<f32>() / e.len() as f32).sqrt();
-        for scene in ["apartment", "cornell", "furnace", "hall", "kitchen", "knot", "nave"] {
-            for family in [Family::Divisive, Family::Agglomerative] {
-                let (single, shared) = errors_in(scene, family);
-                assert!(single.len() > 100, "{scene}: {} points", single.len());
-                println!("{scene} {family:?}: {} {}", rms(&single), rms(&shared));
-                assert!(rms(&single) <= 0.035, "{scene} {family:?}: single {}", rms(&single));
-                assert!(rms(&shared) <= 0.035, "{scene} {family:?}: shared {}", rms(&shared));
-            }
+/// Asserts the errors in scenes of this repository by trees of both families.
+fn assert_errors_in(scenes: &[&str]) {
+    let rms = |e: &[f32]| (e.iter().map(|e| e * e).sum::<f32>() / e.len() as f32).sqrt();
+    for scene in scenes {
+        for family in [Family::Divisive, Family::Agglomerative] {
+            let (single, shared) = errors_in(scene, family);
+            assert!(single.len() > 100, "{scene}: {} points", single.len());
+            assert!(rms(&single) <= 0.035, "{scene} {family:?}: single {}", rms(&single));
+            assert!(rms(&shared) <= 0.035, "{scene} {family:?}: shared {}", rms(&shared));
         }
     }
+}
+
+#[test]
+fn cuts_of_a_real_scene_are_within_their_error() {
+    assert_errors_in(&["knot"]);
+}
+
+#[test]
+#[ignore = "a study: all scenes of the repository"]
+fn cuts_of_real_scenes_are_within_their_error() {
+    assert_errors_in(&["apartment", "cornell", "furnace", "hall", "kitchen", "knot", "nave"]);
 }

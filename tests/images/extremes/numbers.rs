@@ -38,7 +38,7 @@ fn the_picture_does_not_depend_on_the_unit_of_length() {
     let (path, cuts) = (by_path(&metres, 64), by_lightcuts(&metres));
     for scale in [1e-6, 1e-3, 1e3, 1e6] {
         let world = room_at(scale);
-        // Other rounding leads to another path or cluster now and then: the scale is no power of two.
+        // Rounding leads to another path or cluster now and then: the scale is no power of two.
         assert_rms_below(0.05, &by_path(&world, 64), &path, &format!("path at {scale}"));
         assert_rms_below(0.05, &by_lightcuts(&world), &cuts, &format!("lightcuts at {scale}"));
     }

@@ -19,10 +19,10 @@ const SEEDS: [u32; 3] = [4, 40, 400];
 const MAX_DEVIATION: f64 = 5.0;
 /// Difference relative to the picture that is none: rounding, and what depends on the order of surfaces.
 const TOLERANCE: f64 = 0.005;
-/// The same of the brightness by few photons, whose density is blurred: in a closed cube 2,000 photons lack 1 % of the
+/// Tolerance of few photons, whose density is blurred: in a closed cube 2,000 photons lack 1 % of the
 /// light, 20,000 half of that, and 200,000 a tenth.
 const BLUR_TOLERANCE: f64 = 0.03;
-/// The same of the mean difference over many scenes.
+/// Tolerance of the mean difference over many scenes.
 const MEAN_TOLERANCE: f64 = 0.002;
 
 /// Numbers of scenes: the first `few` unless the environment says others.
@@ -44,7 +44,7 @@ fn is_wanted(name: &str) -> bool {
 fn methods() -> [(&'static str, Method); 6] {
     small_methods().map(|(name, mut method)| {
         let spp = if name == "path" { "16" } else { "2" };
-        // By some thousand photons, places farther than any disc from its middle are dark.
+        // With some thousand photons, points outside all discs are dark.
         let lights = [("vpls", "500"), ("direct_vpls", "128"), ("photons", "16000")];
         for (key, value) in
             lights.into_iter().chain([("gather_rays", "32"), ("least_cell", "4"), ("spp", spp)])
@@ -90,7 +90,7 @@ struct Difference {
     deviation: f64,
     /// Difference of the whole, relative to it; `None` where both are black.
     relative: Option<f64>,
-    /// Its standard error.
+    /// Standard error of the difference.
     error: f64,
 }
 
@@ -203,7 +203,7 @@ fn over_scenes(
             let worlds: Vec<WorldAndView> =
                 told(number, name).iter().map(|spec| toml(&spec.text())).collect();
             found.count(&format!("scene {number} by {name}"), tolerance(name), |seed| {
-                // Of its own: errors that scenes share would not average out.
+                // Seeds differ between scenes, so that errors average out.
                 let seed = number as u32 * 1000 + seed;
                 pair(number, &|way| rendered(&worlds[way], &method, seed))
             });

@@ -163,7 +163,7 @@ impl Spec {
         Spec { powers, ..self.clone() }
     }
 
-    /// The same surfaces, of one grey that shines as much as it absorbs, under a sky of radiance 1.
+    /// Returns the surfaces in one grey that emits as much as it absorbs, under a sky of radiance 1.
     pub fn furnace(&self, number: u64) -> Spec {
         let grey = Dice::new(!number).between(0.1, 0.8);
         let mut spec = Spec { sky: 1.0, points: Vec::new(), is_furnace: true, ..self.clone() };

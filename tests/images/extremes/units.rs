@@ -12,7 +12,7 @@ fn a_room_looks_the_same_in_any_unit_by_every_method() {
         let expected = mean_luminance(&image(&metres, &*method));
         for (scale, world) in &scaled {
             let found = mean_luminance(&image(world, &*method));
-            // Other rounding, now and then another path or cluster.
+            // Rounding leads to another path or cluster now and then.
             assert!(
                 (found / expected - 1.0).abs() < 0.03,
                 "{name} times {scale}: {found}, {expected} in metres"

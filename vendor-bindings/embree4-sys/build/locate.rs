@@ -13,7 +13,7 @@ use std::process::Command;
 pub struct Library {
     /// Absolute path of its folder.
     pub directory: PathBuf,
-    /// Its file name there.
+    /// File name of the library there.
     pub file_name: String,
     /// True if the dynamic loader searches that folder by default.
     pub loader_knows: bool,

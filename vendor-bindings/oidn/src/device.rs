@@ -67,7 +67,8 @@ pub struct Picture<'a> {
     pub color: &'a [[f32; 3]],
     /// Share of light reflected by the surfaces seen, 0 to 1.
     pub albedo: Option<&'a [[f32; 3]]>,
-    /// Their normals, components from -1 to 1; left out where there is no albedo, as the library asks.
+    /// Normals of the visible surfaces, components from -1 to 1; left out where there is no albedo, as the library
+    /// asks.
     pub normal: Option<&'a [[f32; 3]]>,
     /// True if albedo and normals have no noise.
     pub clean_guides: bool,

@@ -38,7 +38,7 @@ pub enum Error {
     Size {
         /// Name of the image.
         image: &'static str,
-        /// Its columns and rows; pixels in one row where no more is known.
+        /// Columns and rows of the image; pixels in one row where no more is known.
         size: [usize; 2],
         /// Columns and rows of the picture.
         picture: [usize; 2],

@@ -154,7 +154,7 @@ fn trees_that_are_there_when_building_is_cancelled_are_whole() {
 fn trees_of_every_kind_and_size_are_valid() {
     for family in FAMILIES {
         for kind in [VplKind::Omni, VplKind::Oriented, VplKind::Directional, VplKind::Lobed] {
-            for n in [0, 1, 2, 3, 5, 16, 17, 100, 3000] {
+            for n in [0, 1, 2, 3, 5, 16, 17, 100, 1000] {
                 let set = random_set(n, kind);
                 let trees = build(&set, family);
                 assert_valid(&trees, std::slice::from_ref(&set));
@@ -278,7 +278,7 @@ fn a_million_vpls_build() {
 
 /// `cargo test --release --lib light_tree -- --ignored --nocapture`
 #[test]
-#[ignore = "a measurement"]
+#[ignore = "a study: a measurement"]
 fn measure_build_time() {
     for n in [500_000, 1_000_000] {
         let set = random_set(n, VplKind::Oriented);

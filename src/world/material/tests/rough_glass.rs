@@ -29,7 +29,7 @@ fn samples_follow_the_density_on_both_sides() {
         |d: Vec3| d.x,
         |d: Vec3| f32::from(d.y > 0.2),
     ];
-    const N: usize = 400_000;
+    const N: usize = 100_000;
     for material in materials() {
         with_bsdf(&material, |bsdf| {
             for theta in [0.3, 1.2, 1.9, 2.9] {

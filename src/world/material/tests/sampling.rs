@@ -51,7 +51,7 @@ fn deviate(observed: &[f64], expected: &[f64]) -> f64 {
 
 #[test]
 fn sampling_follows_the_density() {
-    const SAMPLES: usize = 200_000;
+    const SAMPLES: usize = 100_000;
     // One-sided 1 % in all, over about a hundred cases: 1e-4 each.
     const CRITICAL: f64 = 3.72;
     let mut random = Random(1);

@@ -20,9 +20,6 @@ mod walls;
 
 use crate::shapes::*;
 
-/// Height of all rooms.
-const HEIGHT: f32 = 2.7;
-
 /// Parts of the scene.
 pub fn parts() -> Vec<Part> {
     let mut scene = Assembly::new();

@@ -1,6 +1,6 @@
 //! Furniture of the rooms.
 
-use super::HEIGHT;
+use super::walls::HEIGHT;
 use crate::props::furniture::*;
 use crate::shapes::*;
 use glam::{Vec2, Vec3};

@@ -1,10 +1,11 @@
 //! Walls with their openings, ceilings, windows, skirting and door casings.
 
-use super::HEIGHT;
 use crate::props::furniture::{casing, skirting};
 use crate::shapes::*;
 use glam::{Affine3A, Vec2, Vec3};
 
+/// Height of all rooms.
+pub(super) const HEIGHT: f32 = 2.7;
 /// Width and height of door openings.
 const DOOR: Vec2 = Vec2::new(0.9, 2.1);
 /// Depth of the window reveals.

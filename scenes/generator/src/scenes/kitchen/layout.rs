@@ -1,6 +1,6 @@
 //! Positions of cupboards and appliances, and of the objects on them.
 
-use super::ROOM;
+use super::room::ROOM;
 use crate::props::kitchen::cabinets::{Fronts, base_unit, base_unit_below, shelf, wall_unit, worktop};
 use crate::props::kitchen::{WORKTOP, WORKTOP_DEPTH, appliances, sink, tableware};
 use crate::shapes::*;

@@ -9,10 +9,6 @@ mod room;
 mod table;
 
 use crate::shapes::*;
-use glam::Vec3;
-
-/// Room's extent from the origin.
-const ROOM: Vec3 = Vec3::new(4.6, 2.6, 4.2);
 
 /// Parts of the scene.
 pub fn parts() -> Vec<Part> {

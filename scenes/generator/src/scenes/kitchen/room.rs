@@ -1,10 +1,11 @@
 //! Walls, ceiling, tiled floor and tiled wall, the window and the door.
 
-use super::ROOM;
 use crate::props::furniture::{casing, door, skirting};
 use crate::shapes::*;
 use glam::{Vec2, Vec3};
 
+/// Extent of the room from the origin.
+pub(super) const ROOM: Vec3 = Vec3::new(4.6, 2.6, 4.2);
 /// Window opening in the right wall: low and high corner in (z, y).
 const WINDOW: (Vec2, Vec2) = (Vec2::new(1.15, 1.12), Vec2::new(2.45, 2.2));
 /// Depth of the window's reveal.

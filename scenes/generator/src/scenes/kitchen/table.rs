@@ -1,6 +1,6 @@
 //! The table with turned legs, four chairs around it and places laid on it, under three hanging lamps.
 
-use super::ROOM;
+use super::room::ROOM;
 use crate::props::furniture::{chair, dining_table, downlight, pendant, uplighter};
 use crate::props::kitchen::tableware;
 use crate::shapes::*;

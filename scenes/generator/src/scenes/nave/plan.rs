@@ -63,7 +63,7 @@ pub struct Window {
 }
 
 impl Window {
-    /// Its outline about `middle` along the wall, in a wall's local frame.
+    /// Outline about `middle` along the wall, in a wall's local frame.
     pub fn outline(&self, middle: f32, segments: usize) -> Vec<glam::Vec2> {
         self.head.opening(glam::Vec2::new(middle, self.spring), self.sill - self.spring, segments)
     }

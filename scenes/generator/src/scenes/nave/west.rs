@@ -28,7 +28,7 @@ pub fn add(scene: &mut Assembly) {
     scene.merge(sky_behind(&opening, WALL, Affine3A::IDENTITY));
 
     for offset in [0.0, 0.3] {
-        // From the lower right up over the arch; the last point of the outline is the left springing.
+        // The outline goes from the lower right up over the arch; the last point of the outline is the left springing.
         let path: Vec<Vec3> = door(DOOR.offset(offset), 0.02)[1..].iter().map(|p| p.extend(0.0)).collect();
         let profile = circle(0.09 - 0.1 * offset, 8);
         let section = Section { points: &profile, closed: true, crease_degrees: 60.0 };

@@ -52,7 +52,7 @@ fn tracery(window: &Window) -> Shell {
 
 /// Sky panel that closes a window, a little inside the wall's outer face.
 pub fn sky_behind(window: &Window, thickness: f32, local: Affine3A) -> Assembly {
-    // Its edge lies inside the wall, so that no gap is left where the curves are cut differently.
+    // The edge lies inside the wall, so that there is no gap where the curves are cut differently.
     let hidden = 0.04;
     let sill = window.sill - window.spring - hidden;
     let outline = window.head.offset(hidden).opening(Vec2::new(0.0, window.spring), sill, 8);

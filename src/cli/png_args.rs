@@ -1,0 +1,29 @@
+//! Options of tone-mapped images.
+
+use base::film::Exposure;
+use clap::Args;
+use std::path::{Path, PathBuf};
+
+/// Options of the tone-mapped image beside an OpenEXR file.
+#[derive(Clone, Debug, Default, Args)]
+pub struct PngArgs {
+    /// Tone-mapped image to write [default: the OpenEXR file with the extension .png]
+    #[arg(long, value_name = "FILE.png")]
+    png: Option<PathBuf>,
+    /// Do not write a tone-mapped image
+    #[arg(long, conflicts_with_all = ["png", "exposure"])]
+    no_png: bool,
+    /// Exposure of the PNG file in stops; `auto` maps the 90th percentile of luminance to 0.8
+    #[arg(long, value_name = "auto|EV", default_value_t, allow_negative_numbers = true)]
+    pub exposure: Exposure,
+}
+
+impl PngArgs {
+    /// Returns the file of the tone-mapped image beside `exr`; `None` if there is to be none.
+    pub fn file(&self, exr: &Path) -> Option<PathBuf> {
+        if self.no_png {
+            return None;
+        }
+        Some(self.png.clone().unwrap_or_else(|| exr.with_extension("png")))
+    }
+}
