@@ -219,11 +219,7 @@ impl XmlReader<'_> {
             used: Cell::new(false),
         };
         match node.tag_name().name() {
-            "default" => {
-                let (name, value) = (need("name")?.to_owned(), need("value")?.to_owned());
-                let default = GivenParameter { value, used: Cell::new(true) };
-                self.parameters.entry(name).or_insert(default).used.set(true);
-            }
+            "default" => self.add_default(need("name")?, need("value")?),
             "include" => {
                 let name = get("name").map(str::to_owned);
                 self.file(&folder_of(path).join(need("filename")?), &place, parent, name, depth + 1)?;
@@ -250,15 +246,16 @@ impl XmlReader<'_> {
                     _ => value::parse(tag, &attributes, &place)?,
                 };
                 let name = snake_case(need("name")?);
-                parent.properties.push(ObjectProperty {
-                    name,
-                    value,
-                    place: place.clone(),
-                    used: Cell::new(false),
-                });
+                parent.properties.push(ObjectProperty { name, value, place, used: Cell::new(false) });
             }
         }
         Ok(())
+    }
+
+    /// Gives a parameter its default value, unless it has a value.
+    fn add_default(&mut self, name: &str, value: &str) {
+        let default = GivenParameter { value: value.to_owned(), used: Cell::new(true) };
+        self.parameters.entry(name.to_owned()).or_insert(default).used.set(true);
     }
 
     /// Registers the id of an object, and returns the object.
