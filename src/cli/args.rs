@@ -369,7 +369,7 @@ mod tests {
         let cli = Cli::command();
         let render = cli.find_subcommand("render").unwrap();
         let samples = render.get_arguments().find(|a| a.get_long() == Some("verify-samples")).unwrap();
-        let default = format!("[default: {}]", verify::Settings::default().most_samples);
+        let default = format!("[default: {}]", verify::VerifySettings::default().max_samples);
         assert!(samples.get_help().unwrap().to_string().contains(&default));
     }
 }

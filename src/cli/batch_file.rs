@@ -213,6 +213,7 @@ fn scalar(value: &Value) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use render::method::Method;
 
     fn entries(text: &str) -> Result<Vec<JobEntry>, Failure> {
         let folder = tempfile::tempdir().unwrap();
@@ -241,7 +242,8 @@ mod tests {
         .unwrap();
         let Command::Render(still) = found[0].command().unwrap() else { panic!("{found:?}") };
         assert_eq!(still.method.method().unwrap().spp(), 2);
-        assert_eq!(still.method.method().unwrap().text("accuracy").as_deref(), Some("0.5,0.25"));
+        let Method::Cache(settings) = still.method.method().unwrap() else { panic!("{still:?}") };
+        assert_eq!(settings.cache.accuracy, [0.5, 0.25]);
         assert!(still.picture.resume && still.picture.denoise.denoise() == Some(true));
         let Command::Walk(walk) = found[1].command().unwrap() else { panic!("{found:?}") };
         assert_eq!((walk.method.method().unwrap().spp(), walk.frames.unwrap().last()), (8, 4));

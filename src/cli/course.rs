@@ -5,7 +5,7 @@
 
 use base::progress::Progress;
 use base::stats::Stage;
-use render::session::{Goal, Wanted};
+use render::session::{Goal, PlanGoal};
 use std::time::Instant;
 
 /// Stages in their order, with their typical shares of the time of a frame.
@@ -43,11 +43,11 @@ pub struct Stages {
 impl Stages {
     /// Returns the stages of a frame with this goal.
     pub fn of(goal: &Goal) -> Stages {
-        let (plan, measures) = match goal.wanted {
-            Wanted::AsSet if goal.may_choose && goal.denoises() => (OF_CHOICE, false),
-            Wanted::AsSet => (0.0, false),
-            Wanted::Time { .. } => (OF_TIME, false),
-            Wanted::Error { .. } => (OF_ERROR, true),
+        let (plan, measures) = match goal.plan {
+            PlanGoal::AsSet if goal.may_choose && goal.denoises() => (OF_CHOICE, false),
+            PlanGoal::AsSet => (0.0, false),
+            PlanGoal::Time(_) => (OF_TIME, false),
+            PlanGoal::Error(_) => (OF_ERROR, true),
         };
         Stages { plan, denoises: goal.denoises(), verifies: goal.verify.is_some() && !measures }
     }
@@ -152,6 +152,7 @@ impl RunProgress {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use render::session::ErrorLimit;
 
     fn at(stage: Stage, done: u64) -> Progress {
         Progress { stage, is_planning: false, done, total: 10 }
@@ -192,16 +193,16 @@ mod tests {
 
     #[test]
     fn plans_and_measurements_have_their_shares() {
-        let verify = Some(render::verify::Settings::default());
+        let verify = Some(render::verify::VerifySettings::default());
         let choice = Stages::of(&Goal { may_choose: true, verify, ..Goal::default() });
         let mut course = RunProgress::new(1, choice, RunSpan::whole());
         assert_eq!(course.fraction(Some(&Progress { is_planning: true, ..at(Stage::Verify, 9) })), 0.0);
         assert!(course.fraction(Some(&at(Stage::Render, 0))) >= OF_CHOICE);
         assert!(course.fraction(Some(&at(Stage::Render, 10))) < 0.5);
         assert!(course.fraction(Some(&at(Stage::Verify, 5))) < 0.9);
-        let searched = Wanted::Error { error: 0.1, max_samples: 1, held: Vec::new() };
+        let searched = PlanGoal::Error(ErrorLimit { error: 0.1, max_samples: 1, pinned: Vec::new() });
         let mut course =
-            RunProgress::new(1, Stages::of(&Goal { wanted: searched, ..Goal::default() }), RunSpan::whole());
+            RunProgress::new(1, Stages::of(&Goal { plan: searched, ..Goal::default() }), RunSpan::whole());
         assert_eq!(course.fraction(Some(&Progress { is_planning: true, ..at(Stage::Render, 9) })), 0.0);
         course.frame_done();
         assert_eq!(course.fraction(None), 1.0);

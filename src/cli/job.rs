@@ -50,17 +50,17 @@ impl RenderJob {
     /// # Errors
     /// If the arguments are wrong or a result cannot be written.
     pub fn new(args: RenderArgs, run: Stopwatch) -> Result<RenderJob, Failure> {
-        let held = args.method.typed();
+        let pinned = args.method.pinned();
         let may_choose = args.method.is_open();
-        let method = args.plan.method(args.method.method()?, &held)?;
+        let method = args.plan.method(args.method.method()?, &pinned)?;
         let verify = verify::settings(&args.verify, &method, args.plan.error.is_some());
-        let wanted = args.plan.wanted(&method, held, args.verify.verify_samples, run)?;
+        let plan = args.plan.goal(&method, pinned, args.verify.verify_samples, run)?;
         let png = args.png.file(&args.output);
         check_outputs(&args.output, png.as_deref(), args.picture.resume)?;
         let goal = Goal {
             method,
             may_choose,
-            wanted,
+            plan,
             features: args.picture.aov.into_iter().collect(),
             denoise: args.picture.denoise.denoise(),
             denoise_quality: args.picture.denoise.quality(),

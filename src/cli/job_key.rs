@@ -2,19 +2,23 @@
 
 use base::film::ExrFile;
 use readers::fnv1a;
-use render::method::path::Begun;
-use render::session::{Goal, Session, Wanted};
+use render::method::ScaledSetting;
+use render::method::path::PartialImage;
+use render::session::{ErrorLimit, Goal, PlanGoal, Session, TimeGoal};
 use serde_json::{Value, json};
 use std::path::Path;
 
 /// Returns the key of an image of `session` with `goal` by this version of the program. `more` holds further
 /// dependencies. The key does not depend on whether the denoiser is installed.
 pub fn of(session: &Session, goal: &Goal, more: Value) -> String {
-    let Goal { method, may_choose, wanted, features, denoise_quality, keep_noisy, verify, .. } = goal;
-    let wanted = match wanted {
-        Wanted::AsSet => Value::Null,
-        Wanted::Time { seconds, held, .. } => json!([seconds, held]),
-        Wanted::Error { error, max_samples, held } => json!([error, max_samples, held]),
+    let Goal { method, may_choose, plan, features, denoise_quality, keep_noisy, verify, .. } = goal;
+    let keys = |pinned: &[ScaledSetting]| pinned.iter().map(|setting| setting.key()).collect::<Vec<_>>();
+    let plan = match plan {
+        PlanGoal::AsSet => Value::Null,
+        PlanGoal::Time(TimeGoal { seconds, pinned, .. }) => json!([seconds, keys(pinned)]),
+        PlanGoal::Error(ErrorLimit { error, max_samples, pinned }) => {
+            json!([error, max_samples, keys(pinned)])
+        }
     };
     hash(json!({
         "version": env!("CARGO_PKG_VERSION"),
@@ -22,7 +26,7 @@ pub fn of(session: &Session, goal: &Goal, more: Value) -> String {
         "method": method.name(),
         "may_choose": may_choose,
         "settings": method.settings(),
-        "wanted": wanted,
+        "wanted": plan,
         "features": format!("{features:?}"),
         "denoise": goal.denoises(),
         "denoise_quality": format!("{denoise_quality:?}"),
@@ -53,9 +57,9 @@ pub fn is_part(exr: &Path, frame: Option<usize>, key: &str) -> bool {
 }
 
 /// Returns the samples of an interrupted image with this key, if it can continue.
-pub fn begun(exr: &Path, frame: Option<usize>, key: &str) -> Option<Begun> {
+pub fn begun(exr: &Path, frame: Option<usize>, key: &str) -> Option<PartialImage> {
     let file = ExrFile::read(exr).ok()?;
-    is_it(&file, frame, key, "true").then(|| Begun::of(&file)).flatten()
+    is_it(&file, frame, key, "true").then(|| PartialImage::of(&file)).flatten()
 }
 
 fn is_it(file: &ExrFile, frame: Option<usize>, key: &str, partial: &str) -> bool {

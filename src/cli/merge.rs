@@ -10,7 +10,7 @@ use anyhow::anyhow;
 use base::film::metrics::{rel_mse_of_variance, standard_error};
 use base::film::{ExrFile, Metadata, SAMPLES, Weight, write_png};
 use render::denoise::{NOISY, NOISY_VARIANCE};
-use render::method::path::Begun;
+use render::method::path::PartialImage;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 
@@ -95,7 +95,7 @@ fn noisy(path: &Path) -> Result<ExrFile, Failure> {
              do; render the rest with the same command and --resume",
         );
     }
-    Begun::remove_squares(&mut file);
+    PartialImage::remove_squares(&mut file);
     if facts.text("denoised").is_some_and(|library| library != "false") {
         let Ok(noisy) = file.layer(NOISY) else {
             return refuse(

@@ -2,10 +2,10 @@
 
 use super::exit::Failure;
 use anyhow::anyhow;
-use base::setting::{Choice, Spec};
-use clap::builder::{PossibleValue, PossibleValuesParser, ValueParser};
+use base::setting::{Choice, Parsed, Spec};
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser, ValueParser};
 use clap::{Arg, ArgAction, ArgMatches, Args, Command, FromArgMatches};
-use render::method::Method;
+use render::method::{Method, ScaledSetting};
 
 /// Name for a method that lightsplat chooses.
 const AUTO: &str = "auto";
@@ -22,7 +22,7 @@ const OF_ANY_METHOD: [&str; 2] = ["seed", "max_depth"];
 pub struct MethodArgs {
     name: String,
     /// Keys and values of the settings.
-    typed: Vec<(&'static str, String)>,
+    typed: Vec<(&'static str, Parsed)>,
 }
 
 impl MethodArgs {
@@ -36,11 +36,8 @@ impl MethodArgs {
             AUTO => Method::default(),
             name => Method::named(name).ok_or_else(|| usage(format!("there is no method {name}")))?,
         };
-        for (key, text) in &self.typed {
-            if !method
-                .set(key, text)
-                .map_err(|error| usage(format!("--{}: {error}", key.replace('_', "-"))))?
-            {
+        for (key, value) in &self.typed {
+            if !method.assign(key, value) {
                 let setting = settings().into_iter().find(|setting| setting.spec.key == *key);
                 let of = setting.map_or(String::new(), |setting| setting.of().join(", "));
                 let (option, name) = (key.replace('_', "-"), method.name());
@@ -58,9 +55,9 @@ impl MethodArgs {
         self.name == AUTO && self.typed.iter().all(|(key, _)| OF_ANY_METHOD.contains(key))
     }
 
-    /// Returns the keys of the settings on the command line.
-    pub fn typed(&self) -> Vec<&'static str> {
-        self.typed.iter().map(|(key, _)| *key).collect()
+    /// Returns the settings on the command line that the quality scale moves. Plans do not change them.
+    pub fn pinned(&self) -> Vec<ScaledSetting> {
+        self.typed.iter().filter_map(|(key, _)| ScaledSetting::of_key(key)).collect()
     }
 }
 
@@ -80,10 +77,10 @@ impl Args for MethodArgs {
 
 impl FromArgMatches for MethodArgs {
     fn from_arg_matches(matches: &ArgMatches) -> Result<MethodArgs, clap::Error> {
-        let text = |key: &str| matches.get_one::<String>(key).cloned();
+        let name = matches.get_one::<String>("method").cloned().unwrap_or_default();
         let keys = settings().into_iter().map(|setting| setting.spec.key);
-        let typed = keys.filter_map(|key| Some((key, text(key)?))).collect();
-        Ok(MethodArgs { name: text("method").unwrap_or_default(), typed })
+        let typed = keys.filter_map(|key| Some((key, matches.get_one::<Parsed>(key)?.clone()))).collect();
+        Ok(MethodArgs { name, typed })
     }
 
     fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), clap::Error> {
@@ -150,7 +147,8 @@ impl MethodSetting {
         let arg = Arg::new(spec.key).long(spec.option()).help(help);
         let arg = arg.help_heading(Some(spec.heading).filter(|heading| !heading.is_empty()));
         if spec.flag {
-            return arg.action(ArgAction::Set).num_args(0).default_missing_value("on");
+            let arg = arg.action(ArgAction::Set).num_args(0).default_missing_value("on");
+            return arg.value_parser(self.parser());
         }
         let arg = match spec.placeholder {
             Some(placeholder) => arg.value_name(placeholder),
@@ -159,18 +157,19 @@ impl MethodSetting {
         arg.value_parser(self.parser())
     }
 
-    /// Builds the parser of the values. The first method that has the setting checks them.
+    /// Builds the parser of the values, which sets them in the first method that has the setting.
     fn parser(&self) -> ValueParser {
-        if !self.choices.is_empty() {
-            let value = |choice: &Choice| PossibleValue::new(choice.name).help(choice.help());
-            return PossibleValuesParser::new(self.choices.iter().map(value)).into();
-        }
         let (key, method) = (self.spec.key, self.defaults.first().map(|(method, _)| *method));
-        let parse = move |text: &str| match method {
-            Some(mut method) => method.set(key, text).map(|_| text.to_owned()),
-            None => Ok(text.to_owned()),
+        let parse = move |text: &str| {
+            let parsed = method.map_or(Ok(None), |mut method| method.parse(key, text))?;
+            parsed.ok_or_else(|| format!("no method has the setting {key}"))
         };
-        parse.into()
+        if self.choices.is_empty() {
+            return parse.into();
+        }
+        let value = |choice: &Choice| PossibleValue::new(choice.name).help(choice.help());
+        let names = PossibleValuesParser::new(self.choices.iter().map(value));
+        names.try_map(move |text: String| parse(&text)).into()
     }
 }
 
@@ -230,10 +229,16 @@ mod tests {
         );
     }
 
-    fn method(name: &str, typed: &[(&'static str, &str)]) -> Result<Method, String> {
-        let typed = typed.iter().map(|&(key, text)| (key, text.to_owned())).collect();
-        let args = MethodArgs { name: name.to_owned(), typed };
-        args.method().map_err(|failure| failure.to_string())
+    fn args(name: &str, typed: &[(&str, &str)]) -> Result<MethodArgs, String> {
+        let options = typed.iter().map(|(key, text)| format!("--{}={text}", key.replace('_', "-")));
+        let words = ["lightsplat".to_owned(), format!("--method={name}")].into_iter().chain(options);
+        let matches = MethodArgs::augment_args(Command::new("lightsplat")).try_get_matches_from(words);
+        let matches = matches.map_err(|error| error.to_string())?;
+        MethodArgs::from_arg_matches(&matches).map_err(|error| error.to_string())
+    }
+
+    fn method(name: &str, typed: &[(&str, &str)]) -> Result<Method, String> {
+        args(name, typed)?.method().map_err(|failure| failure.to_string())
     }
 
     #[test]
@@ -241,14 +246,16 @@ mod tests {
         let error = method("path", &[("probe_rays", "64")]).unwrap_err();
         assert!(error.contains("--probe-rays is a setting of --method cache, photon-cache;"), "{error}");
         assert!(error.contains("--method path has no such setting"), "{error}");
-        for key in ["vpls", "clamp", "compensation", "indirect"] {
-            assert!(method("photon-cache", &[(key, "1")]).is_err(), "{key}");
+        for (key, value) in [("vpls", "1"), ("clamp", "1"), ("compensation", "on"), ("indirect", "cuts")] {
+            let error = method("photon-cache", &[(key, value)]).unwrap_err();
+            assert!(error.contains("--method photon-cache has no such setting"), "{key}: {error}");
         }
         let by_cuts = method("cache", &[("direct", "cuts"), ("indirect", "cuts")]).unwrap_err();
         assert!(by_cuts.contains("--method reconstruction"), "{by_cuts}");
         let cache = method("cache", &[("max_cut", "7"), ("clamp", "0")]).unwrap();
         let Method::Cache(settings) = cache else { panic!("{cache:?}") };
-        assert_eq!((settings.cut.max_cut, settings.cache.cut.max_cut), (7, 7));
-        assert_eq!((settings.cut.clamp, settings.cache.cut.clamp), (None, None));
+        assert_eq!((settings.cut.max_cut, settings.cut.clamp), (7, None));
+        let typed = [("max_cut", "7"), ("seed", "3"), ("spp", "2")];
+        assert_eq!(args("auto", &typed).unwrap().pinned(), [ScaledSetting::Spp, ScaledSetting::MaxCut]);
     }
 }

@@ -4,9 +4,9 @@ use super::exit::Failure;
 use anyhow::anyhow;
 use base::stats::Stopwatch;
 use clap::{Args, ValueEnum};
-use render::method::Method;
+use render::method::{Method, ScaledSetting};
 use render::plan::{DRAFT, FINAL, Ladder, PREVIEW, REFERENCE};
-use render::session::Wanted;
+use render::session::{ErrorLimit, PlanGoal, TimeGoal};
 
 /// Default of the maximum number of paths per pixel whose error is measured.
 const MAX_SAMPLES: u32 = 1 << 16;
@@ -26,7 +26,7 @@ pub enum Quality {
 
 impl Quality {
     /// Returns the level of the settings on the quality scale.
-    pub fn height(self) -> f64 {
+    pub fn level(self) -> f64 {
         match self {
             Quality::Draft => DRAFT,
             Quality::Preview => PREVIEW,
@@ -54,41 +54,40 @@ pub struct PlanArgs {
 }
 
 impl PlanArgs {
-    /// Returns `method` with the settings of a quality, except those pinned in `held`.
-    pub fn method(&self, method: Method, held: &[&'static str]) -> Result<Method, Failure> {
+    /// Returns `method` with the settings of a quality, except the pinned ones.
+    pub fn method(&self, method: Method, pinned: &[ScaledSetting]) -> Result<Method, Failure> {
         let Some(quality) = self.quality else { return Ok(method) };
-        let ladder = Ladder::new(method, held).ok_or_else(|| unplannable("--quality has"))?;
-        Ok(ladder.at(quality.height()))
+        let ladder = Ladder::new(method, pinned).ok_or_else(|| unplannable("--quality has"))?;
+        Ok(ladder.at(quality.level()))
     }
 
-    /// Returns the goal for which settings of `method` are planned, except those pinned in `held`. The run began with
-    /// `run`.
+    /// Returns the goal for which settings of `method` are planned, except the pinned ones. The run began with `run`.
     ///
     /// # Errors
     /// If the method has no scale of settings.
-    pub fn wanted(
+    pub fn goal(
         &self,
         method: &Method,
-        held: Vec<&'static str>,
+        pinned: Vec<ScaledSetting>,
         max_samples: Option<u32>,
         run: Stopwatch,
-    ) -> Result<Wanted, Failure> {
+    ) -> Result<PlanGoal, Failure> {
         let max_samples = max_samples.unwrap_or(MAX_SAMPLES);
-        let wanted = match (self.time, self.error) {
-            (Some(seconds), _) => Wanted::Time { seconds, run, held },
-            (None, Some(error)) => Wanted::Error { error, max_samples, held },
-            (None, None) => return Ok(Wanted::AsSet),
+        let goal = match (self.time, self.error) {
+            (Some(seconds), _) => PlanGoal::Time(TimeGoal { seconds, run, pinned }),
+            (None, Some(error)) => PlanGoal::Error(ErrorLimit { error, max_samples, pinned }),
+            (None, None) => return Ok(PlanGoal::AsSet),
         };
-        if method.ladder().is_empty() {
+        if method.as_scales().is_none() {
             return Err(unplannable("--time and --error plan"));
         }
-        Ok(wanted)
+        Ok(goal)
     }
 }
 
 /// Returns the error of a method without a scale of settings, which names the methods that have one.
 fn unplannable(options: &str) -> Failure {
-    let planned = Method::all().filter(|method| !method.ladder().is_empty());
+    let planned = Method::all().filter(|method| method.as_scales().is_some());
     let planned: Vec<_> = planned.map(|method| method.name()).collect();
     Failure::usage(anyhow!("{options} settings of --method {} only", planned.join(", ")))
 }

@@ -12,8 +12,8 @@ use anyhow::{Context, anyhow};
 use base::film::SAMPLES;
 use base::progress::Control;
 use base::stats::{Stage, Stopwatch, peak_resident_bytes};
-use render::method::path::Begun;
-use render::session::{BLACK, Frame, FrameError, Opened, Remark};
+use render::method::path::PartialImage;
+use render::session::{BLACK, FrameError, Opened, Remark, RenderedFrame};
 use std::fs;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -48,8 +48,7 @@ pub fn still(job: &RenderJob, opened: &Opened, span: RunSpan, control: &Control)
     let inputs = Inputs::of(&opened.session);
     inputs.check_apart(paths())?;
     outputs::check_unprotected(paths())?;
-    if let Some(png) = png.filter(|_| job.goal.method.text("inspect").is_some_and(|inspect| inspect == "on"))
-    {
+    if let Some(png) = png.filter(|_| job.goal.method.inspects()) {
         inputs.check_layers(png)?;
     }
     let parts = [exr.clone(), picture::beside(exr)];
@@ -70,7 +69,7 @@ pub fn still(job: &RenderJob, opened: &Opened, span: RunSpan, control: &Control)
     }
     let is_black = frame.is_black();
     let can_go_on = frame.film.layers.iter().any(|layer| layer.name == SAMPLES);
-    let Frame { film, mut stats, mut facts, remarks, measured, complete, unverified, .. } = frame;
+    let RenderedFrame { film, mut stats, mut facts, remarks, measured, complete, unverified, .. } = frame;
     say(&remarks);
     let exposed = png.as_deref().zip(job.png.as_ref().map(|(_, exposure)| exposure.factor(&film.color)));
     let written = stats.time(Stage::Write, || picture::write(&exr, exposed, film))?;
@@ -126,10 +125,10 @@ fn say(remarks: &[Remark]) {
 fn render(
     job: &RenderJob,
     opened: &Opened,
-    begun: Option<Begun>,
+    begun: Option<PartialImage>,
     mut progress: Watch,
     control: &Control,
-) -> Result<Frame, Failure> {
+) -> Result<RenderedFrame, Failure> {
     let Opened { session, warnings, .. } = opened;
     let view = View::new(&session.cameras, &job.framing).map_err(Failure::usage)?;
     if control.is_cancelled() {
@@ -139,7 +138,7 @@ fn render(
         Some(begun) => session.rest_of_frame(&view, &job.goal, begun, control),
         None => session.frame(&view, &job.goal, control),
     };
-    let is_done = |frame: &Result<Frame, FrameError>| {
+    let is_done = |frame: &Result<RenderedFrame, FrameError>| {
         frame.as_ref().is_ok_and(|frame| frame.complete && !frame.unverified)
     };
     let frame = progress.frame(job.framing.frame, control, work, is_done);

@@ -12,7 +12,7 @@ use anyhow::{Context, anyhow};
 use base::film::{Exposure, Film, Image};
 use base::progress::Control;
 use base::stats::{Stage, Stopwatch};
-use render::session::{BLACK, Frame, FrameError, Opened, Remark, Session};
+use render::session::{BLACK, FrameError, Opened, Remark, RenderedFrame, Session};
 use render::walk::saved::{self, Pace};
 use render::walk::{Walk, exposure};
 use serde_json::json;
@@ -133,7 +133,8 @@ impl Frames<'_> {
         );
         let view = View::new(&session.cameras, &job.framing(number)).map_err(Failure::usage)?;
         let work = || walk.frame(&view, control);
-        let is_done = |frame: &Result<Frame, FrameError>| frame.as_ref().is_ok_and(|frame| frame.complete);
+        let is_done =
+            |frame: &Result<RenderedFrame, FrameError>| frame.as_ref().is_ok_and(|frame| frame.complete);
         let frame = self.progress.frame(Some(number), control, work, is_done);
         let mut frame = frame.map_err(|error| match error {
             FrameError::Interrupted | FrameError::Unplanned => interrupted(number),
@@ -160,7 +161,13 @@ impl Frames<'_> {
     }
 
     /// Writes a frame and reports its files.
-    fn write(&mut self, frame: &mut Frame, number: usize, key: &str, view: &View) -> Result<(), Failure> {
+    fn write(
+        &mut self,
+        frame: &mut RenderedFrame,
+        number: usize,
+        key: &str,
+        view: &View,
+    ) -> Result<(), Failure> {
         let (exr, png) = self.job.files(number);
         let factor = self.factor(number, view)?;
         frame.film.metadata.set("frame", number as f64);
@@ -198,7 +205,7 @@ impl Frames<'_> {
     }
 
     /// Prints the remarks of a frame that no earlier frame had.
-    fn say_once(&mut self, frame: &Frame, number: usize) {
+    fn say_once(&mut self, frame: &RenderedFrame, number: usize) {
         for remark in &frame.remarks {
             let (Remark::Note(text) | Remark::Warning(text)) = remark;
             if self.said.insert(text.clone()) {

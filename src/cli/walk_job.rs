@@ -9,8 +9,8 @@ use super::{job_key, threads};
 use anyhow::anyhow;
 use base::film::Exposure;
 use readers::LoadOptions;
-use render::session::{Goal, Session, Wanted};
-use render::walk::chunk::{self, Chunk, Run};
+use render::session::{Goal, PlanGoal, Session};
+use render::walk::chunk::{self, FrameChunk, Run};
 use render::walk::{FileNames, FrameList, RetentionLimits, saved};
 use serde_json::json;
 use std::num::NonZeroUsize;
@@ -54,12 +54,11 @@ impl WalkJob {
     /// # Errors
     /// If the arguments are wrong or a file cannot be written.
     pub fn new(args: WalkArgs) -> Result<WalkJob, Failure> {
-        let held = args.method.typed();
         let plan = PlanArgs { quality: args.quality, ..PlanArgs::default() };
         let goal = Goal {
-            method: plan.method(args.method.method()?, &held)?,
+            method: plan.method(args.method.method()?, &args.method.pinned())?,
             may_choose: false,
-            wanted: Wanted::AsSet,
+            plan: PlanGoal::AsSet,
             features: args.picture.aov.into_iter().collect(),
             denoise: args.picture.denoise.denoise(),
             denoise_quality: Some(args.picture.denoise.quality().unwrap_or_default()),
@@ -154,14 +153,14 @@ impl WalkJob {
             ]),
         );
         // Without records, frames do not depend on each other.
-        let size = if self.goal.method.keeps_records() { self.chunk } else { NonZeroUsize::new(1) };
+        let size = if self.goal.method.as_walks().is_some() { self.chunk } else { NonZeroUsize::new(1) };
         let chunks = chunk::chunks(&numbers, size, session.cameras.path.len());
         Ok(chunks.into_iter().map(|chunk| self.planned(chunk, &key)).collect())
     }
 
     /// Decides which frames of a chunk to render.
-    fn planned(&self, chunk: Chunk, key: &str) -> PlannedChunk {
-        let Chunk { frames, ends } = chunk;
+    fn planned(&self, chunk: FrameChunk, key: &str) -> PlannedChunk {
+        let FrameChunk { frames, ends } = chunk;
         let keys: Vec<String> = (0..frames.len()).map(|i| job_key::of_frame(key, &frames[..=i])).collect();
         let is_done = |(number, key): (&usize, &String)| {
             let (exr, png) = self.files(*number);

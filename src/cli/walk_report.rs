@@ -5,7 +5,7 @@ use super::chart::chart;
 use super::exit::Failure;
 use super::talk;
 use base::stats::{Counter, Stage, StageTime, Stats};
-use render::session::Frame;
+use render::session::RenderedFrame;
 use serde_json::json;
 
 /// Columns of the table of frames with their counters.
@@ -61,7 +61,7 @@ impl WalkReport {
     ///
     /// # Errors
     /// If they cannot be printed.
-    pub fn add(&mut self, number: usize, frame: &Frame) -> Result<(), Failure> {
+    pub fn add(&mut self, number: usize, frame: &RenderedFrame) -> Result<(), Failure> {
         let stats = &frame.stats;
         let is_first = self.rendered == 0;
         self.rendered += 1;

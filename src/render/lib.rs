@@ -1,11 +1,12 @@
-//! Images of a scene: methods, settings chosen for a time or an error, sessions and walks.
+//! Images of a scene: methods, settings planned for a time or an error, sessions and walks.
 //!
-//! [`session`] is the interface: a scene held ready, and frames rendered of it. [`walk`] renders the frames of a camera
-//! path. [`method`] holds the renderers that are compared. [`plan`] chooses settings, [`verify`] measures the error of
-//! an image, [`denoise`] removes its noise.
+//! [`session`] is the interface: a scene that is ready to render, and its frames. [`walk`] renders the frames of a
+//! camera path. [`method`] holds the renderers that are compared. [`cost`] prices their work, [`plan`] chooses
+//! settings, [`verify`] measures the error of an image, [`denoise`] removes its noise.
 
 #![forbid(unsafe_code)]
 
+pub mod cost;
 pub mod denoise;
 pub mod method;
 pub mod plan;

@@ -113,7 +113,7 @@ fn every_method_finds_the_light_of_every_scene() {
     for (what, scene) in SCENES {
         let world = scene();
         for (name, method) in small_methods() {
-            let image = image(&world, &*method);
+            let image = image(&world, method.renderer());
             assert_means_within(TOLERANCE, mean(&image), DVec3::ONE, &format!("{what}, by {name}"));
         }
     }

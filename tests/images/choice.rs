@@ -8,7 +8,7 @@ use lightsplat::math::Rgb;
 use lightsplat::method::{Method, cache, path};
 use lightsplat::progress::Control;
 use lightsplat::scene::{Distribution, Environment, Fresnel, Lobe, Material, Reflectance};
-use lightsplat::session::{Frame, Goal, Remark};
+use lightsplat::session::{Goal, Remark, RenderedFrame};
 use lightsplat::verify;
 use lightsplat::view::View;
 
@@ -72,7 +72,7 @@ fn indirect() -> SceneAndView {
 }
 
 /// The frame of a scene by the default, left open, with a seed and a part of the film.
-fn chosen(scene: &SceneAndView, seed: u32, change: impl FnOnce(&mut View)) -> Frame {
+fn chosen(scene: &SceneAndView, seed: u32, change: impl FnOnce(&mut View)) -> RenderedFrame {
     let (session, mut view) = session(scene.clone());
     change(&mut view);
     let settings = cache::Settings { seed, ..cache::Settings::default() };
@@ -81,7 +81,7 @@ fn chosen(scene: &SceneAndView, seed: u32, change: impl FnOnce(&mut View)) -> Fr
 }
 
 /// Rays that a frame took, those of its plan included.
-fn rays(frame: &Frame) -> f64 {
+fn rays(frame: &RenderedFrame) -> f64 {
     let counters = &frame.stats.to_json()["counters"];
     let count = |group: &str, name: &str| counters[group][name].as_f64().unwrap_or(0.0);
     let cache =
@@ -91,7 +91,7 @@ fn rays(frame: &Frame) -> f64 {
 }
 
 /// Mean square of the relative error of a frame, less the worst hundredth of the pixels.
-fn error(frame: &Frame, truth: &Image) -> f64 {
+fn error(frame: &RenderedFrame, truth: &Image) -> f64 {
     let mean =
         truth.pixels.iter().map(|p| f64::from(p.element_sum())).sum::<f64>() / truth.pixels.len() as f64;
     let pixels = frame.film.color.pixels.iter().zip(&truth.pixels);
@@ -105,7 +105,7 @@ fn error(frame: &Frame, truth: &Image) -> f64 {
 }
 
 /// Frame by a method as it is set, denoised.
-fn by(scene: &SceneAndView, method: Method) -> Frame {
+fn by(scene: &SceneAndView, method: Method) -> RenderedFrame {
     let (session, view) = session(scene.clone());
     frame(&session, &view, method, true)
 }
@@ -122,7 +122,7 @@ fn paths_within(rays_in_all: f64, scene: &SceneAndView) -> u32 {
 #[test]
 fn seeds_parts_of_the_film_and_threads_do_not_change_the_choice() {
     for scene in [gloss(), indirect()] {
-        let facts = |frame: &Frame| {
+        let facts = |frame: &RenderedFrame| {
             let plan = &frame.facts["plan"];
             ["chosen", "paths_a_sample", "rays_ratio", "pilot_rays"].map(|key| plan[key].clone())
         };
@@ -175,7 +175,7 @@ fn errors_measured_by_paths_come_with_a_warning_where_paths_seldom_find_the_ligh
     for (radius, is_seldom) in [(0.005, true), (0.15, false)] {
         let (session, mut view) = session(caustics(radius));
         crop(&mut view);
-        let verify = verify::Settings { pixels: 16, ..verify::Settings::default() };
+        let verify = verify::VerifySettings { pixels: 16, ..verify::VerifySettings::default() };
         for verify in [None, Some(verify)] {
             let goal = Goal { may_choose: true, verify, ..Goal::default() };
             let frame = session.frame(&view, &goal, &Control::new()).unwrap();

@@ -5,7 +5,7 @@ use lightsplat::method::{LightStore, Method, Output, Renderer, path};
 use lightsplat::progress::Control;
 use lightsplat::readers::{LoadOptions, Loaded, load};
 use lightsplat::scene::Cameras;
-use lightsplat::session::{Frame, Goal, Remark, Session};
+use lightsplat::session::{Goal, Remark, RenderedFrame, Session};
 use lightsplat::view::View;
 pub use lightsplat::world::testkit::*;
 use std::path::{Path, PathBuf};
@@ -70,13 +70,13 @@ pub fn session(SceneAndView { scene, view }: SceneAndView) -> (Session, View) {
 }
 
 /// The frame of a view by a method as it is set, denoised or not.
-pub fn frame(session: &Session, view: &View, method: Method, denoise: bool) -> Frame {
+pub fn frame(session: &Session, view: &View, method: Method, denoise: bool) -> RenderedFrame {
     let goal = Goal { method, denoise: Some(denoise), ..Goal::default() };
     session.frame(view, &goal, &Control::new()).expect("a frame")
 }
 
 /// True, with a line that says so, if a frame that was to be denoised is noisy since there is no library.
-pub fn lacks_denoiser(frame: &Frame) -> bool {
+pub fn lacks_denoiser(frame: &RenderedFrame) -> bool {
     let warning = frame.remarks.iter().find(|remark| matches!(remark, Remark::Warning(_)));
     if let Some(warning) = warning {
         eprintln!("skipped: {warning:?}");

@@ -6,11 +6,11 @@ use glam::{DVec3, Vec3};
 use lightsplat::film::metrics::{rel_mse, rel_mse_of_variance, relative_error_map};
 use lightsplat::film::{Image, Window};
 use lightsplat::math::Rgb;
-use lightsplat::method::path::{RayCounts, Wanted, pixel_means};
+use lightsplat::method::path::{PixelPaths, PixelSampling, RayCounts, pixel_means};
 use lightsplat::method::{Estimand, Family, Method, cache, lightcuts, path, reconstruction};
 use lightsplat::progress::Control;
 use lightsplat::scene::PixelFilter;
-use lightsplat::verify::{Estimate, Settings, Verified, verify};
+use lightsplat::verify::{Estimate, Verified, VerifySettings, verify};
 use lightsplat::view::View;
 use rayon::prelude::*;
 
@@ -36,7 +36,7 @@ fn lit_room() -> WorldAndView {
     world(scene)
 }
 
-fn check(world: &WorldAndView, image: &Image, settings: &Settings) -> Verified {
+fn check(world: &WorldAndView, image: &Image, settings: &VerifySettings) -> Verified {
     verify(world, &world.view, image, settings, &Control::new()).expect("nobody cancels")
 }
 
@@ -45,7 +45,7 @@ fn a_right_picture_is_measured_as_right() {
     let (world, radiance) = furnace();
     let mut image = Image::new(40, 30);
     image.pixels.fill(radiance);
-    let found = check(&world, &image, &Settings { pixels: 300, ..Settings::default() });
+    let found = check(&world, &image, &VerifySettings { pixels: 300, ..VerifySettings::default() });
     assert!(found.relative_bias.covers(0.0), "{found:?}");
     assert!(found.relative_rms.low == 0.0 && found.relative_rms.high < 0.006, "{found:?}");
     // Hidden by noise, and no more than if all of that were error: 1.96 times its deviation, more by the
@@ -65,7 +65,7 @@ fn errors_put_into_a_right_picture_are_measured_within_their_intervals() {
     let mut truth = image.clone();
     truth.pixels.fill(radiance);
     for seed in 0..4 {
-        let found = check(&world, &image, &Settings { pixels: 400, seed, ..Settings::default() });
+        let found = check(&world, &image, &VerifySettings { pixels: 400, seed, ..VerifySettings::default() });
         let bias = 0.95f64 * 0.03 - 0.05 * 0.3;
         assert!(found.relative_bias.covers(bias) && width(found.relative_bias) < 0.02, "{found:?}");
         let rms = rel_mse(&image, &truth, 0.0).sqrt();
@@ -85,7 +85,7 @@ fn a_path_traced_picture_has_the_error_that_its_own_variance_states() {
     let settings = path::Settings { spp: 64, ..path::Settings::default() };
     let output = rendered(&world, &settings);
     let noise = rel_mse_of_variance(&output.variance.unwrap(), &output.color).sqrt();
-    let found = check(&world, &output.color, &Settings { pixels: 600, ..Settings::default() });
+    let found = check(&world, &output.color, &VerifySettings { pixels: 600, ..VerifySettings::default() });
     // The variance is a conservative estimate, since samples are stratified.
     assert!(found.relative_rms.low < noise && found.relative_rms.high > 0.5 * noise, "{noise} {found:?}");
     assert!(found.relative_bias.low < 0.0 && found.relative_bias.high > 0.0, "{found:?}");
@@ -105,7 +105,7 @@ fn edges_count_as_errors_of_pixels_but_not_of_eye_samples() {
     let one = lightcuts::Settings { spp: 1, ..Default::default() };
     let by_one = image(&world, &one);
     let at = |estimand: Estimand| {
-        check(&world, &by_one, &Settings { pixels: 700, estimand, ..Settings::default() })
+        check(&world, &by_one, &VerifySettings { pixels: 700, estimand, ..VerifySettings::default() })
     };
     let light = at(Estimand::EyeSamples { spp: 1, seed: 0 });
     assert_eq!((light.relative_rms.high, light.relative_bias.value), (0.0, 0.0), "{light:?}");
@@ -119,7 +119,7 @@ fn edges_count_as_errors_of_pixels_but_not_of_eye_samples() {
     let four = lightcuts::Settings { spp: 4, seed: 3, ..Default::default() };
     let by_four = image(&world, &four);
     let at = |estimand: Estimand| {
-        check(&world, &by_four, &Settings { pixels: 700, estimand, ..Settings::default() })
+        check(&world, &by_four, &VerifySettings { pixels: 700, estimand, ..VerifySettings::default() })
     };
     assert!(at(Estimand::EyeSamples { spp: 4, seed: 3 }).relative_rms.high < 1e-6);
     assert!(at(Estimand::EyeSamples { spp: 4, seed: 4 }).relative_rms.low > 0.02);
@@ -132,7 +132,7 @@ fn pictures_by_filters_with_negative_lobes_are_measured_as_they_are() {
     let a = world.view.camera.filter.sharpening();
     let converged = path::Settings { spp: 2048, ..path::Settings::default() };
     let output = rendered(&world, &converged);
-    let settings = Settings { pixels: 300, ..Settings::default() };
+    let settings = VerifySettings { pixels: 300, ..VerifySettings::default() };
     let sharp = check(&world, &output.color.sharpened(a), &settings);
     let soft = check(&world, &output.color, &settings);
     let noise = rel_mse_of_variance(&output.variance.unwrap().sharpened_variance(a), &output.color).sqrt();
@@ -149,13 +149,13 @@ fn crops_threads_and_seeds() {
     let view = View { window, ..world.view };
     let settings = path::Settings { spp: 16, ..path::Settings::default() };
     let image = rendered_view(&world, &view, &settings).color;
-    let settings = Settings { pixels: 100, most_samples: 256, ..Settings::default() };
-    let run = |threads: usize, settings: &Settings| {
+    let settings = VerifySettings { pixels: 100, max_samples: 256, ..VerifySettings::default() };
+    let run = |threads: usize, settings: &VerifySettings| {
         on_threads(threads, || verify(&world, &view, &image, settings, &Control::new())).unwrap()
     };
     let one = run(1, &settings);
     assert_eq!(one, run(3, &settings));
-    assert_ne!(one, run(1, &Settings { seed: 1, ..settings }));
+    assert_ne!(one, run(1, &VerifySettings { seed: 1, ..settings }));
     // The crop's pixels are those of the whole film: their error is noise, not displacement.
     assert!(one.relative_rms.value < 0.5 && one.pixels <= 100, "{one:?}");
     let control = Control::new();
@@ -169,10 +169,10 @@ fn references(world: &WorldAndView, estimand: Estimand, spp: u32) -> Vec<Image> 
     let [width, height] = world.view.window.film;
     let depth = world.scene.max_depth.unwrap_or(u32::MAX);
     let row = |y: u32, seed: u32| -> Vec<Rgb> {
-        let wanted: Vec<Wanted> =
-            (0..width).map(|x| Wanted { pixel: [x, y], samples: spp / MEANS }).collect();
-        let seed = (0x00c0_ffee + seed, depth);
-        let (row, _) = pixel_means(world, &world.view, estimand, &wanted, seed, &mut RayCounts::default());
+        let wanted: Vec<PixelPaths> =
+            (0..width).map(|x| PixelPaths { pixel: [x, y], samples: spp / MEANS }).collect();
+        let sampling = PixelSampling { estimand, seed: 0x00c0_ffee + seed, max_depth: depth };
+        let (row, _) = pixel_means(world, &world.view, sampling, &wanted, &mut RayCounts::default());
         row.into_iter().map(|mean| mean.as_vec3()).collect()
     };
     let reference = |seed: u32| {
@@ -265,7 +265,7 @@ fn intervals_cover_the_true_error_at_least_nine_times_in_ten() {
             let (_, references) = traced.iter().find(|(l, _)| *l == estimand).unwrap();
             let truth = known(&image, references);
             for seed in 0..4 {
-                let settings = Settings { pixels: 500, estimand, seed, ..Settings::default() };
+                let settings = VerifySettings { pixels: 500, estimand, seed, ..VerifySettings::default() };
                 let found = check(&world, &image, &settings);
                 let square = |e: Estimate| e.map(|e| e * e);
                 let estimates =
@@ -317,7 +317,7 @@ mod study_of_default {
         for image in pictures {
             let truth = known(&image, &references);
             for seed in 0..20 {
-                let settings = Settings { pixels: 400, seed, ..Settings::default() };
+                let settings = VerifySettings { pixels: 400, seed, ..VerifySettings::default() };
                 let found = check(&world, &image, &settings);
                 let square = |e: Estimate| e.map(|e| e * e);
                 let estimates =

@@ -7,7 +7,7 @@ use glam::Vec3;
 use lightsplat::film::metrics::{Variances, compare};
 use lightsplat::method::{Method, cache, path};
 use lightsplat::progress::Control;
-use lightsplat::session::{Frame, Goal};
+use lightsplat::session::{Goal, RenderedFrame};
 use lightsplat::view::View;
 use lightsplat::walk::{RetentionLimits, Walk};
 
@@ -32,7 +32,7 @@ fn settings() -> cache::Settings {
 
 /// Value of a counter, which must be there.
 #[track_caller]
-fn count(frame: &Frame, name: &str) -> u64 {
+fn count(frame: &RenderedFrame, name: &str) -> u64 {
     counted(&frame.stats, name).unwrap_or_else(|| panic!("{name} is not counted"))
 }
 
@@ -166,7 +166,7 @@ fn drawn_light_is_carried_from_frame_to_frame() {
     assert!(fewer * 3 < rays * 2, "{fewer} shadow rays, {rays} by all samples");
     let method = Method::Path(path::Settings { spp: 1024, ..Default::default() });
     let reference = frame(&session, &views[FRAMES - 1], method, false).film.color;
-    let error = |frame: &Frame| {
+    let error = |frame: &RenderedFrame| {
         compare(&frame.film.color, &reference, Variances::default()).unwrap().rel_mse_trimmed.sqrt()
     };
     // A decibel.

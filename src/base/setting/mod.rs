@@ -1,41 +1,61 @@
-//! Settings, each declared once: [`settings!`] makes a struct whose fields carry name, text, range, default
-//! and the levels of a benchmark, [`choices!`] an enum that can be one's type.
+//! Settings, each declared once. [`settings!`] declares a struct whose fields carry name, text, range, default and the
+//! levels of a benchmark. [`choices!`] declares an enum that can be the type of a setting.
 //!
-//! All else is derived by [`Settings::each`]: command-line options and their help, reports in statistics and
-//! files, benchmarks, plans, and the table in the README.
+//! [`Settings::each`] visits all settings of a struct. Command-line options and their help, reports in statistics and
+//! files, benchmarks, and the table in the README derive from it.
 
+mod help;
 mod shared;
 mod spec;
 mod value;
 
-pub use shared::{COMPENSATION, INSPECT, PATCHES, SHARE};
+pub use shared::{COMPENSATION, INSPECT, PAPER, PATCHES, SHARE};
 pub use spec::{DOWN, JudgedBy, Levels, Spec, UP};
-pub use value::{Choice, Value};
+pub use value::{Assign, Choice, Parsed, Value};
 
 /// Visitor of settings.
 pub type Each<'a> = &'a mut (dyn FnMut(&'static Spec, &mut dyn Value) + 'a);
 
 /// A struct of settings, or a setting of its own.
 pub trait Settings {
-    /// Visits all settings, groups in place. Settings implied by others are adjusted afterwards.
+    /// Visits all settings in the order of the fields, with the settings of a group in its place.
     fn each(&mut self, each: Each);
 
-    /// Sets the setting named `key` from text; returns false if there is none.
+    /// Sets the setting of this key from text; returns its value, or `None` if there is no such setting.
     ///
     /// # Errors
     /// A description of the values expected. Nothing is set then.
-    fn set(&mut self, key: &str, text: &str) -> Result<bool, String> {
-        let mut result = Ok(false);
+    fn parse(&mut self, key: &str, text: &str) -> Result<Option<Parsed>, String> {
+        let mut result = Ok(None);
         self.each(&mut |spec, value| {
             if spec.key == key {
-                result = spec.set(value, text).map(|()| true);
+                result = spec.set(value, text).map(|()| Some(value.parsed()));
             }
         });
         result
     }
+
+    /// Sets the setting of this key from text; returns false if there is no such setting.
+    ///
+    /// # Errors
+    /// A description of the values expected. Nothing is set then.
+    fn set(&mut self, key: &str, text: &str) -> Result<bool, String> {
+        self.parse(key, text).map(|value| value.is_some())
+    }
+
+    /// Sets the setting of this key to a parsed value; returns false if there is no such setting, or of another type.
+    fn assign(&mut self, key: &str, parsed: &Parsed) -> bool {
+        let mut assigned = false;
+        self.each(&mut |spec, value| {
+            if spec.key == key {
+                assigned = value.assign(parsed);
+            }
+        });
+        assigned
+    }
 }
 
-/// A struct of settings with its `Default` and [`Settings`]:
+/// Declares a struct of settings, with its `Default` and [`Settings`]:
 ///
 /// ```text
 /// settings! {
@@ -45,7 +65,7 @@ pub trait Settings {
 ///         probe_rays: u32 = 128 => [.range(1.0, 4096.0).scaled(&UP)];
 ///         /// A group of settings.
 ///         cut: CutSettings = CutSettings::default() => [group];
-///         /// The same, less some of them.
+///         /// A group without some of its settings.
 ///         light: LightPassSettings = LightPassSettings::default() => [group without ["vpls"]];
 ///         /// A setting shared with other structs.
 ///         share: bool = true => [is SHARE];
@@ -55,7 +75,7 @@ pub trait Settings {
 /// }
 /// ```
 ///
-/// `[by f]` lets `f(&mut self, each)` visit a field, `[at path.to.it ...]` visits a part of one.
+/// `[at field ...]` visits a field of the field.
 #[macro_export]
 macro_rules! settings {
     (
@@ -86,7 +106,7 @@ macro_rules! settings {
     };
 }
 
-/// Visit of a field by [`settings!`].
+/// Visits a field for [`settings!`].
 #[macro_export]
 macro_rules! visit {
     ($s:ident $each:ident $heading:ident $field:ident $doc:tt) => {};
@@ -103,9 +123,6 @@ macro_rules! visit {
     ($s:ident $each:ident $heading:ident $field:ident $doc:tt [is $SPEC:path]) => {
         $each(&$SPEC, &mut $s.$field)
     };
-    ($s:ident $each:ident $heading:ident $field:ident $doc:tt [by $visit:path]) => {
-        $visit($s, $each)
-    };
     ($s:ident $each:ident $heading:ident $field:ident $doc:tt [at $part:ident $($build:tt)*]) => {{
         static SPEC: $crate::setting::Spec = $crate::setting::visit!(@spec $heading $field $doc) $($build)*;
         $each(&SPEC, &mut $s.$field.$part)
@@ -119,8 +136,9 @@ macro_rules! visit {
     };
 }
 
-/// An enum that is the type of a setting: every variant with its text and its name on the command line, and its default
-/// behind the enum's name if it has one whatever the setting.
+/// Declares an enum that is the type of a setting: every variant with its text and its name on the command line.
+///
+/// The default of all settings of the type, if there is one, follows the enum's name.
 #[macro_export]
 macro_rules! choices {
     (

@@ -1,15 +1,19 @@
-//! Settings that stand in several structs.
+//! Settings of several structs.
 
 use super::{JudgedBy, Spec, UP};
 
+/// Heading of settings that Herzog et al. 2009 vary, or that stay for comparison.
+pub const PAPER: &str = "Settings of the paper (for comparison)";
+
 /// Sharing of cuts between neighbours.
 pub static SHARE: Spec =
-    Spec::new("share", "Sharing of cuts between neighbours, for speed", "Lightcuts").values(&["on", "off"]);
+    Spec::new("share", "Share cuts between neighbours, for speed", "Lightcuts").values(&["on", "off"]);
 
 /// Number of patches of eye samples.
 pub static PATCHES: Spec = Spec::new(
     "patches",
-    "Patches of eye samples, about: a cut shared by sixteen of each is reconstructed at the others",
+    "Approximate number of patches of eye samples. Sixteen samples of a patch share a cut, from which the others are \
+     reconstructed",
     "Lightcuts",
 )
 .at_least(1.0)
@@ -18,16 +22,16 @@ pub static PATCHES: Spec = Spec::new(
 /// Compensation for light lost to clamping.
 pub static COMPENSATION: Spec = Spec::new(
     "compensation",
-    "Compensation by short rays for light lost to clamping, in creases most of all",
+    "Find the light that clamping takes by tracing short rays; it matters most in creases",
     "Lightcuts",
 )
 .values(&["off", "on"])
 .judged_by(JudgedBy::Light);
 
-/// Images that show how the picture was made.
+/// Images that show how the image was made.
 pub static INSPECT: Spec = Spec::new(
     "inspect",
-    "Further layers of the OpenEXR file, and PNG files beside the picture, that show how it was made",
+    "Write further layers to the OpenEXR file, and further PNG files, that show how the image was made",
     "",
 )
 .flag();

@@ -1,29 +1,30 @@
-//! Description of a setting, all but its value.
+//! Description of a setting: everything but its value.
 
-use super::Value;
+use super::help::first_paragraph;
+use super::value::Value;
 use serde::Serialize;
 
-/// From four times the default down.
+/// Factors from four times the default down to a quarter.
 pub const DOWN: [f64; 5] = [4.0, 2.0, 1.0, 0.5, 0.25];
-/// From a quarter of the default up.
+/// Factors from a quarter of the default up to four times it.
 pub const UP: [f64; 5] = [0.25, 0.5, 1.0, 2.0, 4.0];
 
 /// Description of a setting.
 #[derive(Debug)]
 pub struct Spec {
-    /// Name in statistics and metadata; with dashes, the option's.
+    /// Name in statistics and metadata, and of the option with dashes.
     pub key: &'static str,
-    /// The field's documentation, of which the first paragraph is for users.
+    /// Documentation of the field. Its first paragraph is the text for users.
     doc: &'static str,
-    /// Heading of its group in `--help`; empty for none.
+    /// Heading of the setting's group in `--help`; empty for none.
     pub heading: &'static str,
-    /// Placeholder of the value in `--help`, where the name does not say enough.
+    /// Placeholder of the value in `--help`, if the name does not describe it.
     pub placeholder: Option<&'static str>,
-    /// True for an option without a value: typed, it is on.
+    /// True for an option without a value, which turns the setting on.
     pub flag: bool,
-    /// Minimum and maximum.
+    /// Minimum and maximum of every number.
     range: [f64; 2],
-    /// Levels that benchmarks try, if it trades error for time.
+    /// Levels that benchmarks try, if the setting trades error for time.
     levels: Levels,
 }
 
@@ -32,13 +33,13 @@ pub struct Spec {
 pub struct Levels {
     /// Factors on the default.
     pub factors: &'static [f64],
-    /// Values as they are typed.
+    /// Values as users type them.
     pub values: &'static [&'static str],
-    /// Names of the numbers that it has, if several; those without are not varied.
+    /// Names of the numbers, if the setting has several. Numbers without a name are not varied.
     pub parts: &'static [&'static str],
-    /// Settings, by key, that make it matter where it does not by default.
+    /// Other settings, by key, with which this one has an effect, if it has none by default.
     pub with: &'static [(&'static str, &'static str)],
-    /// Error that the knob is judged by.
+    /// Error by which levels are judged.
     pub judged_by: JudgedBy,
 }
 
@@ -46,12 +47,13 @@ pub struct Levels {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum JudgedBy {
-    /// Error against cuts of a much smaller error on the same virtual lights, by the same samples: the errors of the
-    /// lights and their clamping would hide all else.
+    /// Error against much finer cuts of the same virtual lights at the same samples.
+    ///
+    /// Errors of the virtual lights and of clamping would hide all others.
     Limit,
-    /// Error of light: the setting changes the virtual lights or their clamping.
+    /// Error against path tracing: the setting changes the virtual lights or their clamping.
     Light,
-    /// FLIP of whole pictures: the setting changes the samples.
+    /// FLIP of complete images: the setting changes the samples.
     Flip,
 }
 
@@ -59,88 +61,88 @@ const NO_LEVELS: Levels =
     Levels { factors: &[], values: &[], parts: &[""], with: &[], judged_by: JudgedBy::Limit };
 
 impl Spec {
-    /// A setting of any value, which no benchmark varies.
+    /// Creates a setting of any value, which no benchmark varies.
     pub const fn new(key: &'static str, doc: &'static str, heading: &'static str) -> Spec {
         let range = [f64::MIN, f64::MAX];
         Spec { key, doc, heading, placeholder: None, flag: false, range, levels: NO_LEVELS }
     }
 
-    /// Under another name than the field's.
+    /// Sets another name than the field's.
     pub const fn named(self, key: &'static str) -> Spec {
         Spec { key, ..self }
     }
 
-    /// Under another heading than its struct's.
+    /// Sets another heading than the struct's.
     pub const fn heading(self, heading: &'static str) -> Spec {
         Spec { heading, ..self }
     }
 
-    /// With this placeholder for its value in `--help`.
+    /// Sets the placeholder of the value in `--help`.
     pub const fn placeholder(self, text: &'static str) -> Spec {
         Spec { placeholder: Some(text), ..self }
     }
 
-    /// As an option without a value.
+    /// Makes the setting an option without a value.
     pub const fn flag(self) -> Spec {
         Spec { flag: true, ..self }
     }
 
-    /// Of numbers from `low` to `high`.
+    /// Limits numbers to the range from `low` to `high`.
     pub const fn range(self, low: f64, high: f64) -> Spec {
         Spec { range: [low, high], ..self }
     }
 
-    /// Of numbers from `low`.
+    /// Limits numbers to `low` and more.
     pub const fn at_least(self, low: f64) -> Spec {
         self.range(low, f64::MAX)
     }
 
-    /// Of numbers above 0.
+    /// Limits numbers to more than 0.
     pub const fn positive(self) -> Spec {
         self.at_least(f64::MIN_POSITIVE)
     }
 
-    /// Of numbers from 0 to 1.
+    /// Limits numbers to the range from 0 to 1.
     pub const fn fraction(self) -> Spec {
         self.range(0.0, 1.0)
     }
 
-    /// Varied by benchmarks, by factors on its default.
+    /// Lets benchmarks vary the setting by factors on its default.
     pub const fn scaled(self, factors: &'static [f64]) -> Spec {
         Spec { levels: Levels { factors, ..self.levels }, ..self }
     }
 
-    /// Varied by benchmarks, over values as they are typed.
+    /// Lets benchmarks vary the setting over values as users type them.
     pub const fn values(self, values: &'static [&'static str]) -> Spec {
         Spec { levels: Levels { values, ..self.levels }, ..self }
     }
 
-    /// With names for its numbers; those without are not varied.
+    /// Names the numbers. Benchmarks do not vary numbers without a name.
     pub const fn parts(self, parts: &'static [&'static str]) -> Spec {
         Spec { levels: Levels { parts, ..self.levels }, ..self }
     }
 
-    /// Varied while other settings have values that make it matter.
+    /// Sets values of other settings with which benchmarks vary this one.
     pub const fn with(self, with: &'static [(&'static str, &'static str)]) -> Spec {
         Spec { levels: Levels { with, ..self.levels }, ..self }
     }
 
-    /// Sets another error to judge by than [`JudgedBy::Limit`].
+    /// Sets the error by which benchmarks judge levels; [`JudgedBy::Limit`] by default.
     pub const fn judged_by(self, judged_by: JudgedBy) -> Spec {
         Spec { levels: Levels { judged_by, ..self.levels }, ..self }
     }
 
-    /// Levels that benchmarks try; `None` if it does not trade error for time.
+    /// Returns the levels that benchmarks try; `None` if the setting does not trade error for time.
     pub fn levels(&self) -> Option<&Levels> {
         Some(&self.levels).filter(|levels| !levels.factors.is_empty() || !levels.values.is_empty())
     }
 
-    /// Name of the option, without its two dashes.
+    /// Returns the name of the option, without its two dashes.
     pub fn option(&self) -> String {
         self.key.replace('_', "-")
     }
 
-    /// Text for users.
+    /// Returns the text for users.
     pub fn help(&self) -> String {
         first_paragraph(self.doc)
     }
@@ -156,7 +158,7 @@ impl Spec {
         match value.parse(text.trim()) {
             Ok(()) if value.numbers().iter().all(is_in) => return Ok(()),
             Ok(()) => value.parse(&before)?,
-            // The range of the setting says more than that of its type.
+            // The range of the setting is narrower than that of its type.
             Err(_) if text.trim().parse().is_ok_and(|number: f64| number.is_finite() && !is_in(&number)) => {}
             Err(error) => return Err(error),
         }
@@ -168,14 +170,8 @@ impl Spec {
         })
     }
 
-    /// Sets a number of `value` to the nearest that it can have.
+    /// Sets a number of `value`, one of several if `part` is not 0, to the nearest in range.
     pub fn set_number(&self, value: &mut dyn Value, part: usize, number: f64) {
         value.put(part, number.clamp(self.range[0], self.range[1]));
     }
-}
-
-/// The first paragraph of a documentation comment, as one line without the stop at its end.
-pub fn first_paragraph(doc: &str) -> String {
-    let lines: Vec<&str> = doc.lines().map(str::trim).take_while(|line| !line.is_empty()).collect();
-    lines.join(" ").trim_end_matches('.').replace('`', "")
 }

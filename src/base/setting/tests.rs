@@ -32,7 +32,7 @@ settings! {
         part: Part = Part { share: 0.5, ..Part::default() } => [group without ["probe_rays"]];
         /// Another.
         other: Part = Part::default() => [at probe_rays .named("rays").range(1.0, 4096.0)];
-        /// Its colour.
+        /// Colour of the whole.
         colour: Colour = Colour::Green => [];
         /// Least and largest.
         reach: [[f32; 2]; 2] = [[1.5, 20.0], [1.5, 40.0]] => [.positive()];
@@ -45,7 +45,7 @@ settings! {
     }
 }
 
-/// Key, text and number of values.
+/// Returns key, text and number of values of all settings.
 fn all(settings: &mut dyn Settings) -> Vec<(&'static str, String, usize)> {
     let mut found = Vec::new();
     settings.each(&mut |spec: &Spec, value: &mut dyn Value| {
@@ -107,6 +107,21 @@ fn what_is_shown_is_read_back_and_what_makes_no_sense_is_refused() {
         (whole.other.probe_rays, whole.most, whole.fast, whole.bound),
         (16, Some(4), Some(false), None)
     );
+}
+
+#[test]
+fn parsed_values_are_set_where_the_type_is_the_same() {
+    let mut whole = Whole::default();
+    let rays = whole.parse("rays", "16").unwrap().unwrap();
+    assert_eq!(format!("{rays:?}"), "16");
+    assert!(whole.parse("nothing", "16").unwrap().is_none() && whole.parse("rays", "0").is_err());
+    let mut other = Whole::default();
+    assert!(other.assign("rays", &rays) && other.other.probe_rays == 16);
+    let before = all(&mut other);
+    assert!(
+        !other.assign("nothing", &rays) && !other.assign("colour", &rays) && !other.assign("most", &rays)
+    );
+    assert_eq!(all(&mut other), before);
 }
 
 #[test]

@@ -1,11 +1,14 @@
-//! Types that a setting may have. Each has a text, which users type, and which `--help` and reports show.
+//! Types of settings. Each value has a text, which users type and which `--help` and reports show.
 
-use super::spec::first_paragraph;
+use super::help::first_paragraph;
 use serde_json::{Value as Json, json};
+use std::any::Any;
+use std::fmt;
+use std::sync::Arc;
 
 /// A value of a setting.
-pub trait Value {
-    /// The value as it is typed; nothing for one that cannot be typed.
+pub trait Value: Assign {
+    /// Returns the value as users type it; empty if it cannot be typed.
     fn text(&self) -> String;
 
     /// Parses a value from text.
@@ -14,27 +17,27 @@ pub trait Value {
     /// A description of the values expected. The value is unchanged then.
     fn parse(&mut self, text: &str) -> Result<(), String>;
 
-    /// All values, where they have names.
+    /// Returns all values, if they have names.
     fn choices(&self) -> &'static [Choice] {
         &[]
     }
 
-    /// Its numbers; none where values have names.
+    /// Returns the numbers of the value; none if values have names.
     fn numbers(&self) -> Vec<f64> {
         self.text().split(',').filter_map(|number| number.parse().ok()).collect()
     }
 
-    /// Changes one of its numbers.
+    /// Changes one of the numbers.
     fn put(&mut self, part: usize, number: f64) {
         let mut numbers: Vec<String> = self.numbers().iter().map(f64::to_string).collect();
         if let Some(old) = numbers.get_mut(part) {
             *old = number.to_string();
         }
-        // Numbers that were there before are expected.
+        // The text has as many numbers as the type expects.
         let _ = self.parse(&numbers.join(","));
     }
 
-    /// The value in reports.
+    /// Returns the value for reports.
     fn json(&self) -> Json {
         let text = self.text();
         let number = |x: f64| if x.fract() == 0.0 && x.abs() < 1e15 { json!(x as i64) } else { json!(x) };
@@ -47,23 +50,59 @@ pub trait Value {
     }
 }
 
+/// A value that was parsed, of the type of one setting.
+#[derive(Clone)]
+pub struct Parsed {
+    text: String,
+    value: Arc<dyn Any + Send + Sync>,
+}
+
+impl fmt::Debug for Parsed {
+    fn fmt(&self, formatter: &mut fmt::Formatter) -> fmt::Result {
+        formatter.write_str(&self.text)
+    }
+}
+
+/// Copies of values whose type is not known.
+pub trait Assign {
+    /// Returns a copy.
+    fn parsed(&self) -> Parsed;
+
+    /// Copies `parsed` if it has the same type; returns false if it has not.
+    fn assign(&mut self, parsed: &Parsed) -> bool;
+}
+
+impl<T: Value + Copy + Send + Sync + 'static> Assign for T {
+    fn parsed(&self) -> Parsed {
+        Parsed { text: self.text(), value: Arc::new(*self) }
+    }
+
+    fn assign(&mut self, parsed: &Parsed) -> bool {
+        let value = parsed.value.downcast_ref::<T>();
+        if let Some(value) = value {
+            *self = *value;
+        }
+        value.is_some()
+    }
+}
+
 /// A value that has a name.
 #[derive(Clone, Copy, Debug)]
 pub struct Choice {
-    /// Text to type.
+    /// Text that users type.
     pub name: &'static str,
-    /// Its documentation.
+    /// Documentation of the value.
     pub doc: &'static str,
 }
 
 impl Choice {
-    /// Text for users.
+    /// Returns the text for users.
     pub fn help(&self) -> String {
         first_paragraph(self.doc)
     }
 }
 
-/// Numbers; `$expected` says which are, of what is none, and `$put` makes one from an `f64`.
+/// Implements [`Value`] for numbers: `$expected` describes the numbers expected, `$put` converts from `f64`.
 macro_rules! number {
     ($($Number:ty, $expected:expr, $put:expr;)+) => {$(
         impl Value for $Number {
@@ -90,7 +129,7 @@ number! {
     f64, |_| "expected a number".to_owned(), |x: f64| x;
 }
 
-/// The whole numbers that are expected; those that are out of their range learn what it is.
+/// Describes the whole numbers expected, with their range if `text` is a whole number out of it.
 fn whole_number(text: &str, most: u64) -> String {
     match text.parse::<f64>() {
         Ok(number) if number.fract() == 0.0 => format!("expected a whole number from 0 to {most}"),
@@ -98,8 +137,9 @@ fn whole_number(text: &str, most: u64) -> String {
     }
 }
 
-const SWITCH: [Choice; 2] = [Choice { name: "on", doc: "Do" }, Choice { name: "off", doc: "Do not" }];
-const AUTOMATIC: [Choice; 3] = [SWITCH[0], SWITCH[1], Choice { name: "auto", doc: "Where it is faster" }];
+const SWITCH: [Choice; 2] = [Choice { name: "on", doc: "Enabled" }, Choice { name: "off", doc: "Disabled" }];
+const AUTOMATIC: [Choice; 3] =
+    [SWITCH[0], SWITCH[1], Choice { name: "auto", doc: "Enabled if it is faster" }];
 
 impl Value for bool {
     fn text(&self) -> String {
@@ -120,7 +160,7 @@ impl Value for bool {
     }
 }
 
-/// On, off, or the faster choice.
+/// On, off, or the faster of them.
 impl Value for Option<bool> {
     fn text(&self) -> String {
         self.map_or("auto".to_owned(), |on| on.text())
@@ -141,7 +181,7 @@ impl Value for Option<bool> {
     }
 }
 
-/// A number, or the default described in the setting's text.
+/// A number, or a default that the setting's text describes.
 impl Value for Option<u32> {
     fn text(&self) -> String {
         self.map_or(String::new(), |number| number.to_string())
@@ -154,10 +194,10 @@ impl Value for Option<u32> {
     }
 }
 
-/// Minimum of shares that have one.
+/// Minimum of optional shares, besides 0.
 const MIN_SHARE: f32 = 1e-3;
 
-/// A share of a thousandth or more, or 0 for none.
+/// A share of at least [`MIN_SHARE`], or 0 for none.
 impl Value for Option<f32> {
     fn text(&self) -> String {
         self.unwrap_or(0.0).to_string()
@@ -189,7 +229,7 @@ impl Value for [f32; 2] {
     }
 }
 
-/// Ranges of direct and of indirect light; one that is typed alone is both.
+/// Ranges of direct and of indirect light. A single range holds for both.
 impl Value for [[f32; 2]; 2] {
     fn text(&self) -> String {
         self.map(|range| range.text()).join(",")

@@ -126,7 +126,7 @@ fn scene(study: &Study, subject: &Subject) -> Result<Option<SceneChoices>, Study
     let base = Method::default();
     let watch = Stopwatch::start();
     let chooser =
-        Chooser::new((&subject.session.world, &LightStore::default()), &subject.view, &base, study.control);
+        Chooser::new(&subject.session.world, &LightStore::default(), &subject.view, &base, study.control);
     let pilot_seconds = watch.elapsed().cpu_seconds;
     let (Some(chooser), Some(ladder)) = (chooser, Ladder::new(base, &[])) else {
         (study.say)(&format!("{}: there is no light, and nothing to choose", subject.name));

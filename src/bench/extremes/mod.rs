@@ -133,7 +133,7 @@ fn figures(
     let (mut mse, mut mean, mut nonfinite) = (0.0, 0.0, 0);
     for seed in 0..seeds {
         let mut method = entrant.method;
-        method.set_number("seed", 0, 1000.0 + seed as f64);
+        method.set_seed(1000 + seed as u32);
         let goal = Goal { method, denoise: Some(entrant.denoise), ..Goal::default() };
         // Pictures are far smaller than memory: the only error is that of cancellation.
         let frame = subject.session.frame(&subject.view, &goal, study.control).ok();

@@ -92,7 +92,7 @@ fn candidates(study: &Study) -> Vec<(Candidate, String)> {
     let default = Candidate::new("default", Method::default());
     let by_spp = SPP.map(|spp| {
         let mut method = Method::default();
-        method.set_number("spp", 0, f64::from(spp));
+        method.set_spp(spp);
         (Candidate::new(format!("default, {spp} spp"), method), format!("--spp {spp}"))
     });
     let paths = study.denoised_paths().map(|candidate| (candidate, String::new()));

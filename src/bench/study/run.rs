@@ -147,10 +147,11 @@ impl Study<'_> {
             let mut loading = Stats::new();
             let finish = Finish::new(&session.world, view, &goal, self.control, &mut loading);
             let method = finish.guided(candidate.method);
-            let mut output = method.render(&session.world, &LightStore::default(), view, self.control);
-            finish.apply(&method, &mut output);
+            let output = method.render(&session.world, &LightStore::default(), view, self.control);
+            let mut output = finish.apply(&method, output);
             output.stats.merge(&loading);
-            if let Some(error) = finish.failure() {
+            let failure = output.denoised.as_ref().and_then(|denoised| denoised.as_ref().err());
+            if let Some(error) = finish.load_error().or(failure) {
                 return Err(StudyError::Denoise(error.clone()));
             }
             if !output.complete {

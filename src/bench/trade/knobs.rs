@@ -32,7 +32,11 @@ impl Knob {
     /// Sets it to a level.
     pub fn turn(&self, level: &Level, method: &mut Method) {
         match level.number {
-            Some(number) => method.set_number(self.key, self.part, number),
+            Some(number) => method.each(&mut |spec, value| {
+                if spec.key == self.key {
+                    spec.set_number(value, self.part, number);
+                }
+            }),
             // Levels are valid by their declaration; a test sets them all.
             None => drop(method.set(self.key, &level.text)),
         }
@@ -60,7 +64,7 @@ pub fn knobs() -> Vec<Knob> {
         }
         // Methods that keep eye samples are judged on those of reconstruction cuts.
         if base.estimand() != Estimand::Pixels {
-            base.set_number("spp", 0, reconstruction::Settings::default().spp.into());
+            base.set_spp(reconstruction::Settings::default().spp);
         }
         for (part, label) in levels.parts.iter().enumerate() {
             if levels.parts.len() > 1 && label.is_empty() {

@@ -1,11 +1,13 @@
-//! Layers of albedo and normals among those of a file, by the names that renderers give them.
+//! Layers of albedo and normals among the layers of a file, by the names that renderers use.
 
-/// Names of layers of albedo in small letters, preferred ones first.
+/// Names of layers of albedo in lower case, in order of preference.
 pub const ALBEDO: [&str; 2] = ["denoising albedo", "albedo"];
-/// Names of layers of normals, likewise: Blender's, ours and many others', Mitsuba's, pbrt's, Arnold's.
+/// Names of layers of normals in lower case, in order of preference.
+///
+/// Blender uses the first, lightsplat and many others the second, then Mitsuba, pbrt and Arnold.
 pub const NORMAL: [&str; 6] = ["denoising normal", "normal", "sh_normal", "nn", "ns", "n"];
 
-/// The layer of one of these names among the channels of a file; the names of views and parts before it do not count.
+/// Finds the layer of one of these names among the channels of a file. Prefixes of views and parts are ignored.
 pub fn layer(channels: &[String], names: &[&str]) -> Option<String> {
     let layers = || channels.iter().filter_map(|channel| Some(channel.rsplit_once('.')?.0));
     let own = |layer: &str| layer.rsplit('.').next().unwrap_or_default().to_lowercase();

@@ -1,4 +1,4 @@
-//! Denoising of small pictures; left out, saying so, where there is no library.
+//! Denoising of small images. The tests print a note and pass if there is no library.
 
 use super::*;
 use base::sampling::hash;
@@ -13,7 +13,7 @@ fn denoiser() -> Option<Denoiser> {
     }
 }
 
-/// A picture of mean `mean` with noise as large.
+/// Creates an image of mean `mean` with noise of the same size.
 fn noisy(width: u32, height: u32, mean: f32) -> Image {
     let noise = |i: u32, c: u32| 2.0 * hash(i, c) as f32 / u32::MAX as f32;
     let pixels = (0..width * height).map(|i| mean * Rgb::from([0, 1, 2].map(|c| noise(i, c)))).collect();
@@ -25,14 +25,14 @@ fn mean(image: &Image) -> f32 {
 }
 
 #[test]
-fn small_pictures_keep_their_brightness() {
+fn small_images_keep_their_brightness() {
     let Some(denoiser) = denoiser() else { return };
     for (width, height) in [(1, 1), (1, 9), (5, 3), (16, 16), (40, 7), (64, 64), (200, 3), (65, 90)] {
         let color = noisy(width, height, 1.0).map(|p| 0.5 + 0.5 * *p);
         let clean = denoiser.denoise(&color, &Guides::default(), Quality::High).unwrap();
         assert_eq!((clean.width, clean.height), (width, height));
         let ratio = mean(&clean) / mean(&color);
-        // 0.18 without the continuation of a single pixel.
+        // 0.18 without the extension of a single pixel.
         assert!((ratio - 1.0).abs() < 0.1, "{width}x{height}: {ratio}");
     }
 }
@@ -83,7 +83,7 @@ fn any_number_of_threads_gives_the_same_bits() {
 }
 
 #[test]
-fn faint_and_bright_pictures_are_denoised_as_others() {
+fn faint_and_bright_images_are_denoised_as_others() {
     let Some(denoiser) = denoiser() else { return };
     let ordinary = denoiser.denoise(&noisy(70, 66, 1.0), &Guides::default(), Quality::High).unwrap();
     for exponent in [-120, -60, -20, -9, 19, 60, 120] {

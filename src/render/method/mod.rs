@@ -1,15 +1,12 @@
-//! The renderers compared, one folder each; they share every stage they can.
+//! The renderers compared, one folder each. They share every stage they can.
 //!
-//! A method is a [`Renderer`]: a struct of settings with a name and a render function. [`Method`] is any of
-//! them.
+//! A method is a [`Renderer`]: a struct of settings with a name and a render function. [`Method`] is any of them.
+//! Further abilities are traits of their own: [`Walks`], [`Resumes`], [`Noisy`], [`Pilots`] and [`Scales`].
 
 pub mod cache;
-mod counts;
-mod drawn_pixels;
-mod kept;
-mod ladder;
 pub mod lightcuts;
 mod lights;
+mod memo;
 pub mod output;
 pub mod path;
 pub mod photon_cache;
@@ -18,16 +15,18 @@ mod prepared;
 pub mod reconstruction;
 mod registry;
 mod renderer;
+mod sampled_pixels;
 mod sampling;
+mod scale;
+mod tally;
 
-pub use drawn_pixels::{DrawnPixels, PILOT_SPP};
-pub use ladder::{Move, RUNGS};
 pub use lights::LightStore;
 pub use output::Output;
-pub use prepared::Prepared;
 pub use registry::Method;
-pub use renderer::{Before, Renderer, render};
-pub use sampling::{Sampled, Sampling};
+pub use renderer::{FormerFrames, Noisy, Pilots, Renderer, Resumes, Walks, render};
+pub use sampled_pixels::{PILOT_SPP, SampledPixels};
+pub use sampling::{HasSampling, Sampling};
+pub use scale::{Demand, LEVELS, Move, ScaleLimits, ScaledSetting, Scales};
 
 // Parts of the methods' settings.
 pub use transport::lightcut::CutSettings;

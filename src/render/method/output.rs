@@ -1,39 +1,48 @@
 //! Results of a method.
 
+use super::tally::Tally;
+use crate::cost::Work;
+use crate::denoise::{DenoiseError, Quality};
 use base::film::{Image, Layer};
 use base::stats::Stats;
 
-/// The result of rendering one frame. All images have the size of the rendered window.
+/// Result of rendering one frame. All images have the size of the rendered window.
 #[derive(Clone, Debug)]
 pub struct Output {
-    /// Radiance by pixel.
+    /// Radiance per pixel.
     pub color: Image,
-    /// Variance of the pixel mean in `color`, per channel, where the method can estimate it.
+    /// Variance of the pixel mean in `color`, per channel, if the method can estimate it.
     pub variance: Option<Image>,
     /// Further images.
     pub extra: Vec<Layer>,
-    /// Features that were found on the way and are those of all its samples, by which it may be denoised.
+    /// Features of the surfaces seen by all samples, to guide a denoiser; empty if the method finds none.
     pub guides: Vec<Layer>,
-    /// Layers by which the picture can go on where it is interrupted; none where the method cannot.
-    pub begun: Vec<Layer>,
-    /// Counters and times.
+    /// Layers from which a partial image can be resumed; empty if the method cannot resume.
+    pub resumable: Vec<Layer>,
+    /// Counters and times, for reports.
     pub stats: Stats,
-    /// False if the method was cancelled: the picture is partial.
+    /// Work that the image took, on which later stages depend.
+    pub work: Work,
+    /// Quality of denoising, or the reason why it failed; `None` if the image was not denoised.
+    pub denoised: Option<Result<Quality, DenoiseError>>,
+    /// False if the method was cancelled: the image is partial.
     pub complete: bool,
-    /// Samples that were not finite and were dropped; anything but 0 is a defect worth reporting.
+    /// Samples that were not finite and were dropped. Anything but 0 is a defect that should be reported.
     pub nonfinite: u64,
 }
 
 impl Output {
-    /// A complete picture and nothing besides.
-    pub fn new(color: Image, stats: Stats) -> Output {
+    /// Creates a complete image without further layers.
+    pub(super) fn new(color: Image, tally: Tally) -> Output {
         Output {
             color,
             variance: None,
             extra: Vec::new(),
             guides: Vec::new(),
-            begun: Vec::new(),
-            stats,
+            resumable: Vec::new(),
+            stats: tally.stats,
+            work: tally.work,
+            denoised: None,
             complete: true,
             nonfinite: 0,
         }

@@ -1,27 +1,36 @@
-//! Photons by mirrors and glass for views, as many as each is worth, kept from frame to frame.
+//! Caustic photons: as many as a view needs, stored from frame to frame.
+//!
+//! Few photons are traced first. A pilot of the view's eye samples tells from them how many more reduce its noise.
 
-use super::kept::kept;
+use super::memo::{Memo, recall};
+use super::tally::Tally;
 use base::progress::Control;
-use base::stats::{Stage, Stats};
+use base::stats::Stage;
 use std::sync::{Arc, Mutex};
 use transport::caustics::{CausticPhotons, Caustics, PhotonCount, PilotPaths};
 use transport::eye::{EyePass, EyeSettings};
 use world::World;
 use world::view::View;
 
-/// Seed and longest path in edges that photons depend on, besides the scene.
-type PhotonsFor = (u32, u32);
+/// Seed and maximum path length on which photons depend, besides the scene.
+type PhotonKey = (u32, u32);
 
-/// Photons by mirrors and glass, few and more.
-struct PhotonsOf {
+/// Photons of a seed and a path length: those of the pilot, and more.
+struct PhotonLevels {
     first: PilotPaths,
-    few: CausticPhotons,
-    /// Photons made last, of those that are more than few, and their number.
-    more: Mutex<Option<(PhotonCount, Arc<CausticPhotons>)>>,
+    pilot: CausticPhotons,
+    /// Photons made last that are more than the pilot's, by their number.
+    more: Memo<PhotonCount, CausticPhotons>,
 }
 
-impl PhotonsOf {
-    /// Light of some of them in a view.
+impl PhotonLevels {
+    fn new(world: &World, seed: u32, max_depth: u32, control: &Control) -> PhotonLevels {
+        let first = PilotPaths::new(world, seed, max_depth, control);
+        let pilot = first.photons(world, PhotonCount::PILOT, control);
+        PhotonLevels { first, pilot, more: Mutex::default() }
+    }
+
+    /// Returns the light of some of the photons in a view.
     fn light(&self, photons: &CausticPhotons, view: &View, settings: EyeSettings) -> FoundCaustics {
         FoundCaustics {
             caustics: photons.seen(view.camera.origin, view.pixel_angle(), settings.max_depth),
@@ -33,87 +42,87 @@ impl PhotonsOf {
     }
 }
 
-/// Light of photons in a view, and what finding it took.
+/// Light of caustic photons in a view, and the work of finding it.
 pub struct FoundCaustics {
-    /// `None` if there is none.
+    /// The light; `None` if there is none.
     pub caustics: Option<Caustics>,
     /// Number of photons.
     pub photons: u64,
-    /// Number of their paths, and of those that were traced before.
+    /// Number of photon paths, with those of the pilot.
     pub paths: u64,
-    /// Closest-hit queries.
+    /// Closest-hit rays.
     pub rays: u64,
-    /// Occlusion queries.
+    /// Shadow rays.
     pub shadow_rays: u64,
 }
 
-/// The photons made last, for as long as the same are wanted.
+/// Caustic photons of the last frame. Frames reuse them if they want the same ones.
 #[derive(Default)]
 pub struct PhotonStore {
-    kept: Mutex<Option<(PhotonsFor, Arc<PhotonsOf>)>>,
+    levels: Memo<PhotonKey, PhotonLevels>,
 }
 
 impl PhotonStore {
-    /// A few photons by mirrors and glass as they light the surfaces of a view: enough for plans.
-    pub fn few(
+    /// Returns the light of the pilot's photons in a view. It is accurate enough for plans.
+    pub fn pilot(
         &self,
-        (world, view): (&World, &View),
+        world: &World,
+        view: &View,
         settings: EyeSettings,
         control: &Control,
     ) -> FoundCaustics {
-        let of = self.of(world, settings, control);
-        of.light(&of.few, view, settings)
+        let levels = self.levels(world, settings, control);
+        levels.light(&levels.pilot, view, settings)
     }
 
-    /// The same of as many photons as the view is worth.
-    pub fn of_view(
+    /// Returns the light of as many photons as reduce the noise of the view.
+    pub fn for_view(
         &self,
-        (world, view): (&World, &View),
+        world: &World,
+        view: &View,
         settings: EyeSettings,
         control: &Control,
     ) -> FoundCaustics {
-        let of = self.of(world, settings, control);
-        let few = of.light(&of.few, view, settings);
-        let Some(light) = &few.caustics else { return few };
-        let (worth, chains) = EyePass::photon_count_factor(world, view, settings, light, control);
-        let count = PhotonCount::nearest(worth);
-        let mut found = few;
+        let levels = self.levels(world, settings, control);
+        let pilot = levels.light(&levels.pilot, view, settings);
+        let Some(light) = &pilot.caustics else { return pilot };
+        let (factor, chains) = EyePass::photon_count_factor(world, view, settings, light, control);
+        let count = PhotonCount::nearest(factor);
+        let mut found = pilot;
         if count > PhotonCount::PILOT {
-            let make = |count: &PhotonCount| of.first.photons(world, *count, control);
-            found = of.light(&kept(&of.more, count, control, make), view, settings);
-            found.paths += of.few.paths;
-            found.rays += of.few.rays;
+            let make = |count: &PhotonCount| levels.first.photons(world, *count, control);
+            found = levels.light(&recall(&levels.more, count, control, make), view, settings);
+            found.paths += levels.pilot.paths;
+            found.rays += levels.pilot.rays;
         }
         found.rays += chains.rays;
         found.shadow_rays += chains.shadow_rays;
         found
     }
 
-    fn of(&self, world: &World, settings: EyeSettings, control: &Control) -> Arc<PhotonsOf> {
-        let EyeSettings { seed, max_depth, .. } = settings;
-        kept(&self.kept, (seed, max_depth), control, |_| {
-            let first = PilotPaths::new(world, seed, max_depth, control);
-            let few = first.photons(world, PhotonCount::PILOT, control);
-            PhotonsOf { first, few, more: Mutex::default() }
-        })
-    }
-
-    /// The same for a picture, whose time and counters it reports.
-    pub fn of_picture(
+    /// Returns the light of [`PhotonStore::for_view`] for an image, and reports its time and counters.
+    pub fn for_image(
         &self,
-        eye: (&World, &View),
+        world: &World,
+        view: &View,
         settings: EyeSettings,
         control: &Control,
-        stats: &mut Stats,
+        tally: &mut Tally,
     ) -> Option<Caustics> {
-        let found = stats.time(Stage::LightPass, || self.of_view(eye, settings, control));
+        let found = tally.time(Stage::LightPass, || self.for_view(world, view, settings, control));
         if found.paths > 0 {
-            stats.count("Caustics/photons", found.photons);
-            stats.count("Caustics/photon paths", found.paths);
-            stats.count("Rays/closest hit", found.rays);
-            stats.count("Rays/shadow", found.shadow_rays);
+            tally.count("Caustics/photons", found.photons);
+            tally.count("Caustics/photon paths", found.paths);
+            tally.rays(found.rays);
+            tally.shadow_rays("Rays/shadow", found.shadow_rays);
         }
         found.caustics
+    }
+
+    fn levels(&self, world: &World, settings: EyeSettings, control: &Control) -> Arc<PhotonLevels> {
+        let EyeSettings { seed, max_depth, .. } = settings;
+        let make = |&(seed, max_depth): &PhotonKey| PhotonLevels::new(world, seed, max_depth, control);
+        recall(&self.levels, (seed, max_depth), control, make)
     }
 }
 
@@ -126,7 +135,7 @@ mod tests {
     use world::testkit::*;
 
     #[test]
-    fn views_of_light_by_glass_are_worth_more_photons_than_others() {
+    fn views_of_caustics_get_more_photons_than_others() {
         let mut scene = scene(Camera::default(), [128, 128]);
         let grey = add_material(&mut scene, diffuse(Rgb::splat(0.5)));
         let ball = add_material(&mut scene, glass(1.5));
@@ -138,7 +147,7 @@ mod tests {
         let WorldAndView { world, view } = world(scene);
         let photons = |forward: Vec3| {
             let camera = Camera { forward, right: forward.cross(view.camera.up), ..view.camera };
-            store.of_view((&world, &View { camera, ..view }), settings, &control).photons
+            store.for_view(&world, &View { camera, ..view }, settings, &control).photons
         };
         let [towards, away, again] = [Vec3::NEG_Z, Vec3::Z, Vec3::NEG_Z].map(photons);
         assert!(away > 0 && towards > 8 * away, "{towards} {away}");

@@ -1,56 +1,71 @@
-//! A picture that lacks but its lighting: the beginning of all methods that light the samples of an eye pass.
+//! An image before its lighting: the first stages of all methods that light the samples of an eye pass.
 
+use super::Sampling;
 use super::lights::{LightStore, lights_wanted};
-use super::{Sampling, counts};
+use super::tally::Tally;
 use base::progress::Control;
-use base::stats::{Stage, Stats};
+use base::stats::Stage;
 use std::sync::Arc;
 use transport::eye::{DirectSampling, EyePass, PointGeometry, PointSurface, ShadingPoints, TILE};
 use transport::lights::{Family, LightPassSettings, Lights};
 use world::view::View;
 use world::{SurfacePoint, World};
 
-/// Maximum number of points whose indirect light photons are planned for, and minimum number of shading points per
-/// point.
-const SEEN: usize = 16384;
-const POINTS_A_PATH: usize = 4;
+/// Maximum number of points whose indirect light photons are planned for.
+const MAX_SEEN: usize = 16384;
+/// Minimum number of shading points for each of them.
+const MIN_STEP: usize = 4;
 
-/// Shading points and virtual lights: all of a picture but its lighting.
+/// Settings of the first stages.
+pub struct Preparation {
+    /// Samples, seed and path length.
+    pub sampling: Sampling,
+    /// Sampling of direct light, if the eye pass does it.
+    pub direct: Option<DirectSampling>,
+    /// Numbers of VPLs.
+    pub lights: LightPassSettings,
+    /// Builder of the light trees.
+    pub family: Family,
+    /// True if photons are planned for the surfaces in view. Otherwise all frames can share the lights.
+    pub for_view: bool,
+}
+
+/// Shading points and virtual lights: an image before its lighting.
 pub struct Prepared<'w> {
     /// Visibility samples and the points to shade.
     pub eye: EyePass<'w>,
     /// The virtual lights.
     pub lights: Arc<Lights>,
-    /// Counters and times so far.
-    pub stats: Stats,
+    /// Counters, times and work so far.
+    pub tally: Tally,
 }
 
 impl<'w> Prepared<'w> {
-    /// Runs the light pass, unless `lights` holds what it would make, and the eye pass. Photons are `aimed` at what
-    /// gives light to what the eye sees, or lights are those of all frames.
+    /// Runs the eye pass, and the light pass unless `lights` holds its result.
     pub fn new(
         world: &'w World,
         lights: &LightStore,
         view: &View,
-        (sampling, drawn): (Sampling, Option<DirectSampling>),
-        (wanted, aimed): ((LightPassSettings, Family), bool),
+        preparation: &Preparation,
         control: &Control,
     ) -> Prepared<'w> {
-        let mut stats = Stats::new();
-        let rays = sampling.eye(&world.scene);
-        let caustics = lights.photons.of_picture((world, view), rays, control, &mut stats);
+        let Preparation { sampling, direct, lights: numbers, family, for_view } = preparation;
+        let mut tally = Tally::default();
+        let settings = sampling.eye(&world.scene);
+        let caustics = lights.photons.for_image(world, view, settings, control, &mut tally);
         control.begin(Stage::EyePass, view.window.tile_count(TILE) as u64);
-        let eye = stats.time(Stage::EyePass, || {
-            EyePass::of(world, view, rays, drawn.as_ref(), caustics.as_ref(), control)
+        let eye = tally.time(Stage::EyePass, || {
+            EyePass::of(world, view, settings, direct.as_ref(), caustics.as_ref(), control)
         });
-        counts::eye(&mut stats, &eye.chains);
-        if drawn.is_some() {
-            stats.count("Eye/light samples", eye.light_samples.into());
+        tally.eye(&eye.chains);
+        if direct.is_some() {
+            tally.count("Eye/light samples", eye.light_samples.into());
         }
-        // Afterwards, since most memory is taken where the eye pass is put in order.
-        let seen = if aimed { seen(world, &eye) } else { Vec::new() };
-        let lights = lights.get(world, lights_wanted(world, sampling, wanted, seen), control, &mut stats);
-        Prepared { eye, lights, stats }
+        // The light pass comes second, since the eye pass takes the most memory when it sorts its points.
+        let seen = if *for_view { seen(world, &eye) } else { Vec::new() };
+        let wanted = lights_wanted(world, *sampling, *numbers, *family, seen);
+        let lights = lights.get(world, wanted, control, &mut tally);
+        Prepared { eye, lights, tally }
     }
 }
 
@@ -60,7 +75,7 @@ fn seen(world: &World, eye: &EyePass) -> Vec<SurfacePoint> {
         return Vec::new();
     }
     let ShadingPoints { geometry, surfaces } = &eye.points;
-    let step = geometry.len().div_ceil(SEEN).max(POINTS_A_PATH);
+    let step = geometry.len().div_ceil(MAX_SEEN).max(MIN_STEP);
     let point = |(geometry, surface): (&PointGeometry, &PointSurface)| SurfacePoint {
         position: geometry.position,
         normal: geometry.normal,

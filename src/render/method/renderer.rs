@@ -1,13 +1,14 @@
-//! The trait of methods.
+//! Traits of methods: the abilities of every method, and those of some.
 
-use super::ladder::Move;
 use super::lights::LightStore;
-use super::path::Begun;
-use super::{DrawnPixels, Output, Prepared, Sampled};
+use super::path::PartialImage;
+use super::sampled_pixels::SampledPixels;
+use super::sampling::HasSampling;
+use super::scale::Scales;
+use crate::method::Output;
 use base::film::{Image, Window};
 use base::progress::Control;
 use base::setting::Settings;
-use base::stats::StageTime;
 use transport::eye::Settled;
 use transport::paths::Estimand;
 use transport::perception::Thresholds;
@@ -15,59 +16,18 @@ use transport::radiance_cache::retained::RetainedRecords;
 use world::World;
 use world::view::View;
 
-/// Work of the frames before, in a walk-through.
-pub struct Before<'a> {
-    /// Records.
-    pub records: &'a mut RetainedRecords,
-    /// Pixels whose light is known.
-    pub settled: Settled,
-    /// Differences that are seen, if they are to be known.
-    pub thresholds: Option<&'a Thresholds>,
-}
-
 /// A method with its settings.
-pub trait Renderer: Settings + Sampled {
-    /// Name on the command line.
+pub trait Renderer: Settings + HasSampling {
+    /// Returns the name on the command line.
     fn name(&self) -> &'static str;
 
-    /// A line for `--help`.
+    /// Returns a line for `--help`.
     fn about(&self) -> &'static str;
 
-    /// Renders the picture of `view`, until `control` is cancelled.
+    /// Renders the image of `view`. The image is partial if `control` is cancelled.
     ///
-    /// `lights` keeps virtual lights from frame to frame.
+    /// `lights` holds virtual lights and photons from frame to frame.
     fn render(&self, world: &World, lights: &LightStore, view: &View, control: &Control) -> Output;
-
-    /// Renders the next frame of a walk-through: by records of the frames before, to which it adds its own, and by few
-    /// samples of settled pixels. Methods without records render it alone.
-    fn render_next(
-        &self,
-        world: &World,
-        lights: &LightStore,
-        _before: Before,
-        view: &View,
-        control: &Control,
-    ) -> Output {
-        self.render(world, lights, view, control)
-    }
-
-    /// Renders the rest of a picture of the same settings and `view` that was interrupted. Methods whose pictures do
-    /// not go on render it anew.
-    fn render_rest(
-        &self,
-        world: &World,
-        lights: &LightStore,
-        _begun: &Begun,
-        view: &View,
-        control: &Control,
-    ) -> Output {
-        self.render(world, lights, view, control)
-    }
-
-    /// True if [`Renderer::render_next`] uses records of the frames before.
-    fn keeps_records(&self) -> bool {
-        false
-    }
 
     /// Rejects settings that contradict each other.
     ///
@@ -77,74 +37,108 @@ pub trait Renderer: Settings + Sampled {
         Ok(())
     }
 
-    /// Has a denoiser's guides found with pictures, by methods that can.
-    fn find_guides(&mut self) {}
-
-    /// True if they come with pictures ([`Output::guides`]).
-    fn finds_guides(&self) -> bool {
-        false
-    }
-
-    /// Value that a pixel is to have.
+    /// Returns the quantity that a pixel estimates.
     fn estimand(&self) -> Estimand {
         let sampling = self.sampling();
         Estimand::EyeSamples { spp: sampling.spp, seed: sampling.seed }
     }
 
-    /// True if pictures have noise that a denoiser is meant to take off: faster than by more samples.
-    fn leaves_noise(&self) -> bool {
-        false
-    }
-
-    /// The light that the method draws at random in groups of film pixels, by [`PILOT_SPP`] samples a pixel, twice,
-    /// whatever its seed; `None` if none is drawn, or if cancelled.
+    /// Returns the approximate memory of a render of `window`, in bytes, without the scene.
     ///
-    /// [`PILOT_SPP`]: super::PILOT_SPP
-    fn draw_pixels(
-        &self,
-        _world: &World,
-        _lights: &LightStore,
-        _view: &View,
-        _groups: &[Vec<[u32; 2]>],
-        _control: &Control,
-    ) -> Option<DrawnPixels> {
-        None
-    }
-
-    /// Memory in bytes for `window` besides the scene, about: what grows with pixels, samples, virtual lights and
-    /// photons.
+    /// The memory covers all that grows with pixels, samples, virtual lights and photons.
     fn expected_bytes(&self, window: &Window) -> u64 {
         Image::expected_bytes(window)
     }
 
-    /// Settings that qualities and plans move together; none where it is not known how.
-    fn ladder(&self) -> &'static [Move] {
-        &[]
-    }
-
-    /// True if [`Renderer::prepare`] makes something: where the lighting can be tried on a part of the picture.
-    fn prepares(&self) -> bool {
-        false
-    }
-
-    /// Makes all of the picture but its lighting, where that can be tried on a part of it.
-    fn prepare<'w>(&self, _world: &'w World, _view: &View, _control: &Control) -> Option<Prepared<'w>> {
+    /// Returns the method as one that renders frames of walk-throughs, if it is one.
+    fn as_walks(&self) -> Option<&dyn Walks> {
         None
     }
 
-    /// Time that lighting a prepared picture would take, by one patch in `every`, or more where those would be few;
-    /// `None` where there is none to light.
-    fn lighting_time(&self, _world: &World, _prepared: &Prepared, _every: usize) -> Option<StageTime> {
+    /// Returns the method as one that resumes interrupted images, if it is one.
+    fn as_resumes(&self) -> Option<&dyn Resumes> {
         None
     }
 
-    /// The prepared picture, lit.
-    fn light(&self, _world: &World, _prepared: Prepared, _control: &Control) -> Option<Output> {
+    /// Returns the method as one whose images have noise, if it is one.
+    fn as_noisy(&self) -> Option<&dyn Noisy> {
+        None
+    }
+
+    /// Returns the method as one that samples single pixels, if it is one.
+    fn as_pilots(&self) -> Option<&dyn Pilots> {
+        None
+    }
+
+    /// Returns the method as one on the quality scale, if it is one.
+    fn as_scales(&self) -> Option<&dyn Scales> {
+        None
+    }
+
+    /// Returns the method as one on the quality scale, to move it there.
+    fn as_scales_mut(&mut self) -> Option<&mut dyn Scales> {
         None
     }
 }
 
-/// Renders one picture of `view`, by virtual lights of its own.
+/// Results of the previous frames of a walk-through.
+pub struct FormerFrames<'a> {
+    /// Records of indirect light.
+    pub records: &'a mut RetainedRecords,
+    /// Pixels whose direct light is reprojected, so that they get fewer samples.
+    pub settled: Settled,
+    /// Visibility thresholds of the previous frame, if records are adapted to them.
+    pub thresholds: Option<&'a Thresholds>,
+}
+
+/// A method that renders frames of a walk-through with the records of previous frames.
+pub trait Walks {
+    /// Renders the next frame, and adds its records to those of `former`.
+    fn render_next(
+        &self,
+        world: &World,
+        lights: &LightStore,
+        former: FormerFrames,
+        view: &View,
+        control: &Control,
+    ) -> Output;
+}
+
+/// A method that resumes interrupted images.
+pub trait Resumes {
+    /// Renders the missing samples of `partial`, an image of the same settings and `view`.
+    ///
+    /// The result has the bits of an image that was not interrupted.
+    fn render_rest(&self, world: &World, partial: &PartialImage, view: &View, control: &Control) -> Output;
+}
+
+/// A method whose images have noise, or may have it.
+pub trait Noisy {
+    /// True if a denoiser takes off the noise faster than further samples would. Such images are denoised by default.
+    fn leaves_noise(&self) -> bool;
+
+    /// True if renders return the denoiser's guides ([`Output::guides`]).
+    fn finds_guides(&self) -> bool;
+}
+
+/// A method that samples single pixels, so that a plan can measure its noise and its work.
+pub trait Pilots {
+    /// Samples groups of film pixels twice, by [`PILOT_SPP`] samples per pixel, with seeds of its own.
+    ///
+    /// The result is `None` if the method samples no light, or if `control` is cancelled.
+    ///
+    /// [`PILOT_SPP`]: super::PILOT_SPP
+    fn sample_pixels(
+        &self,
+        world: &World,
+        lights: &LightStore,
+        view: &View,
+        groups: &[Vec<[u32; 2]>],
+        control: &Control,
+    ) -> Option<SampledPixels>;
+}
+
+/// Renders one image of `view` with virtual lights of its own.
 pub fn render(world: &World, view: &View, settings: &impl Renderer, control: &Control) -> Output {
     settings.render(world, &LightStore::default(), view, control)
 }

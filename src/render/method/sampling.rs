@@ -3,53 +3,63 @@
 use scene::Scene;
 use transport::eye::EyeSettings;
 
-/// Samples of a method, and its path length.
+/// Samples, seed and path length of a method.
 #[derive(Clone, Copy, Debug)]
 pub struct Sampling {
-    /// Samples a pixel.
+    /// Samples per pixel.
     pub spp: u32,
-    /// Another seed, other noise.
+    /// Random seed.
     pub seed: u32,
-    /// Longest path in edges; `None` for the scene's own limit.
+    /// Maximum path length in edges; `None` for the scene's own limit.
     pub max_depth: Option<u32>,
 }
 
-/// Settings that hold those of all methods.
-pub trait Sampled {
-    /// Samples and limit of the method.
+/// Settings that include those of all methods.
+pub trait HasSampling {
+    /// Returns samples, seed and path length.
     fn sampling(&self) -> Sampling;
+
+    /// Sets samples, seed and path length.
+    fn set_sampling(&mut self, sampling: Sampling);
 }
 
 impl Sampling {
-    /// The same for an eye pass.
+    /// Returns these settings for an eye pass of `scene`.
     pub fn eye(&self, scene: &Scene) -> EyeSettings {
         EyeSettings { spp: self.spp.max(1), seed: self.seed, max_depth: scene.path_limit(self.max_depth) }
     }
 }
 
-/// `Settings` of a method of so many samples a pixel by default: those of all methods, and its own; see
-/// [`base::setting`].
+/// Declares the `Settings` of a method: those of all methods, with `spp` samples per pixel by default, and its own.
+///
+/// See [`base::setting`] for the syntax.
 macro_rules! method_settings {
     ($(#[doc = $about:literal])+ spp = $spp:literal, $heading:literal { $($own:tt)* }) => {
         ::base::setting::settings! {
             $(#[doc = $about])+
             pub struct Settings in $heading {
-                /// Samples a pixel.
+                /// Samples per pixel.
                 spp: u32 = $spp => [
                     .heading("").at_least(1.0).scaled(&::base::setting::UP)
                     .judged_by(::base::setting::JudgedBy::Flip)
                 ];
-                /// Another seed, other noise.
+                /// Random seed.
                 seed: u32 = 0 => [.heading("")];
-                /// Longest path in edges from the eye (1: emitters in view, 2: direct light), by default the scene's.
+                /// Maximum path length in edges from the eye (1: visible emitters, 2: direct light) [default: from the
+                /// scene].
                 max_depth: Option<u32> = None => [.heading("").at_least(1.0)];
                 $($own)*
             }
         }
 
-        impl $crate::method::Sampled for Settings {
+        impl $crate::method::HasSampling for Settings {
             fn sampling(&self) -> $crate::method::Sampling {
                 $crate::method::Sampling { spp: self.spp, seed: self.seed, max_depth: self.max_depth }
+            }
+
+            fn set_sampling(&mut self, sampling: $crate::method::Sampling) {
+                let $crate::method::Sampling { spp, seed, max_depth } = sampling;
+                (self.spp, self.seed, self.max_depth) = (spp, seed, max_depth);
             }
         }
     };

@@ -1,58 +1,63 @@
-//! The choice between methods: the cache, or denoised paths.
+//! Choice between the cache and denoised paths.
 //!
-//! The cache finds indirect light without noise at a price that hardly depends on the samples; direct light, drawn, is
-//! as noisy as its samples are few. Paths have no such price, and the noise of all light. So paths win where most noise
-//! is that of the light which both draw (foliage, glossy surfaces, light by mirrors and glass), where they are cheap,
-//! and where few samples are wanted. A short [`Pilot`] of both tells which it is, by counted [`Work`].
+//! The cache finds indirect light without noise, at a price that hardly depends on the number of samples. Direct light
+//! has the noise of its samples. Paths have no such price, and all their light has noise. So paths are better
+//!
+//! - if most noise is in the light that both sample (foliage, glossy surfaces, light through glass and over mirrors),
+//! - if paths are cheap,
+//! - if few samples are wanted.
+//!
+//! A short [`Pilot`] of both methods decides, by [`ExpectedWork`].
 
 use super::ladder::Ladder;
 use super::pilot::Pilot;
-use super::work::Work;
+use super::work::ExpectedWork;
 use crate::method::{LightStore, Method, Sampling, path};
 use base::progress::Control;
 use world::World;
 use world::view::View;
 
-/// Number of levels of the scale of settings that a time is tried with.
+/// Number of levels of the quality scale that are considered for a time.
 const STEPS: u32 = 64;
 
-/// Least number of pixels that choices without a time are made for: icons are by the method of a small picture.
+/// Minimum number of pixels that choices without a time assume. So an icon has the method of a small image.
 const MIN_PIXELS: u64 = 1 << 15;
 
-/// Reason for a method.
+/// Reason for a choice.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Reason {
-    /// As good a picture takes less work.
+    /// An image of the same quality takes less work.
     Work,
-    /// There is no time for either, and its cheapest picture takes less work.
+    /// There is no time for either method, and the cheapest image of this one takes less work.
     NoTime,
-    /// The other did not come to the error that was asked for.
+    /// The other method did not reach the error that was asked for.
     Missed,
 }
 
-/// A method and the reason for it.
+/// A method, and the reason for it.
 #[derive(Clone, Copy, Debug)]
-pub struct Choice {
-    /// The method with its settings.
+pub struct MethodChoice {
+    /// Method with its settings.
     pub method: Method,
-    /// The reason.
+    /// Reason for it.
     pub reason: Reason,
-    /// Expected work of the other method for as good a picture, or for its cheapest where there is no time, over that
-    /// of this one.
+    /// Expected work of the other method for the same quality, over that of this one.
+    ///
+    /// If there is no time, the work is that of the cheapest images.
     pub ahead: f64,
-    /// Number of paths that are worth a first sample of the cache, with the samples that follow it.
+    /// Number of paths that reduce noise as much as a first sample of the cache, with its extra samples.
     pub paths_a_sample: f64,
-    /// Rays of a path over those of a sample of the cache.
+    /// Rays per path over rays per sample of the cache.
     pub rays_ratio: f64,
-    /// Rays that the pilot took.
+    /// Rays of the pilot.
     pub pilot_rays: u64,
     /// Share of the light that paths seldom find.
     pub seldom: f64,
 }
 
-/// The methods chosen between, after their pilot.
+/// Chooses between the methods, from their pilot.
 pub struct Chooser {
-    /// Number of triangles, on which the price of a ray depends.
+    /// Number of triangles of the scene. The price of a ray depends on it.
     triangles: usize,
     pilot: Pilot,
     film_pixels: u64,
@@ -60,10 +65,12 @@ pub struct Chooser {
 }
 
 impl Chooser {
-    /// Runs the pilot of `base`, the cache, and of paths; `None` if there is nothing to choose, as where paths miss
-    /// part of the light, or if cancelled.
+    /// Runs the pilot of `base`, the cache, and of paths.
+    ///
+    /// The result is `None` if there is no choice, for instance because paths miss part of the light, or if cancelled.
     pub fn new(
-        (world, lights): (&World, &LightStore),
+        world: &World,
+        lights: &LightStore,
         view: &View,
         base: &Method,
         control: &Control,
@@ -74,26 +81,27 @@ impl Chooser {
         }
         let Sampling { seed, max_depth, .. } = base.sampling();
         let paths = path::Settings { seed, max_depth, ..path::Settings::default() };
-        let pilot = Pilot::of((world, lights), view, base, &Method::Path(paths), control)?;
+        let pilot = Pilot::of(world, lights, view, [base, &Method::Path(paths)], control)?;
         let film_pixels = view.window.film_pixel_count();
         Some(Chooser { triangles: world.scene.triangle_count(), pilot, film_pixels, paths })
     }
 
-    /// The cheaper of `cache`, as it is set, and as good a picture of paths; icons are judged as small pictures.
-    pub fn as_good_as(&self, cache: &Method) -> Choice {
+    /// Chooses the cheaper of `cache`, with its settings, and paths of the same quality, on a film of a minimum size.
+    pub fn as_good_as(&self, cache: &Method) -> MethodChoice {
         self.cheaper(cache, self.film_pixels.max(MIN_PIXELS))
     }
 
-    /// The same for the film as it is.
-    pub fn on_film(&self, cache: &Method) -> Choice {
+    /// Chooses the cheaper of `cache`, with its settings, and paths of the same quality, on the film as it is.
+    pub fn on_film(&self, cache: &Method) -> MethodChoice {
         self.cheaper(cache, self.film_pixels)
     }
 
-    /// The better of the methods with the settings for which there is time, of those of the cache by its scale, for a
-    /// render of `seconds`, by those of the pilot.
-    pub fn for_time(&self, ladder: &Ladder, seconds: f64, pilot_seconds: f64) -> Choice {
+    /// Chooses the method with the better image in `seconds`, given the time of the pilot.
+    ///
+    /// The settings of the cache are those of its quality scale that fit the time.
+    pub fn for_time(&self, ladder: &Ladder, seconds: f64, pilot_seconds: f64) -> MethodChoice {
         let pixels = self.film_pixels;
-        let work = Work::new(self.triangles, pixels);
+        let work = ExpectedWork::new(self.triangles, pixels);
         let budget = work.of_pilot(&self.pilot) * seconds.max(0.0) / pilot_seconds.max(1e-9);
         let cheapest = ladder.at(0.0);
         let by_cache = work.of_cache(&self.pilot, &cheapest);
@@ -103,13 +111,13 @@ impl Chooser {
                 true => (Method::Path(self.paths), by_cache / by_paths),
                 false => (cheapest, by_paths / by_cache),
             };
-            return Choice { reason: Reason::NoTime, ..self.choice(&cheapest, method, ahead, pixels) };
+            return MethodChoice { reason: Reason::NoTime, ..self.choice(&cheapest, method, ahead, pixels) };
         }
         let heights = (0..=STEPS).rev().map(|step| ladder.top() * f64::from(step) / f64::from(STEPS));
         let in_time = |height: &f64| work.of_cache(&self.pilot, &ladder.at(*height)) <= budget;
         let height = heights.into_iter().find(in_time);
         let cache = ladder.at(height.unwrap_or(0.0));
-        // The cheapest settings of the cache are no use if they take too long.
+        // Settings of the cache that take too long count less.
         let excess = (work.of_cache(&self.pilot, &cache) / budget.max(1e-9)).max(1.0);
         let worth = self.paths_like(&cache, pixels) / excess;
         let paths = budget / by_paths;
@@ -119,37 +127,37 @@ impl Chooser {
         }
     }
 
-    /// Paths, as plans start from them.
+    /// Returns path tracing with the settings from which plans start.
     pub(super) fn of_paths(&self) -> Method {
         Method::Path(self.paths)
     }
 
-    /// The method that a search for an error has chosen, with the reasons by work; the other was tried before if
-    /// `missed`.
-    pub fn of(&self, method: Method, missed: bool) -> Choice {
+    /// Describes the choice of a search for an error by its work. The other method was tried before if `missed`.
+    pub fn of(&self, method: Method, missed: bool) -> MethodChoice {
         let pixels = self.film_pixels;
-        let work = Work::new(self.triangles, pixels);
+        let work = ExpectedWork::new(self.triangles, pixels);
         let mut cache = method;
         if let Method::Path(paths) = method {
             cache = Method::default();
             let worth = self.pilot.paths_a_sample(f64::from(cache.spp()), pixels);
-            cache.set_number("spp", 0, (f64::from(paths.spp) / worth).max(1.0));
+            cache.set_spp((f64::from(paths.spp) / worth).max(1.0).round() as u32);
         }
         let by_cache = work.of_cache(&self.pilot, &cache);
         let by_paths = work.of_paths(&self.pilot, self.paths_like(&cache, pixels));
         let ahead = if matches!(method, Method::Path(_)) { by_cache / by_paths } else { by_paths / by_cache };
         let reason = if missed { Reason::Missed } else { Reason::Work };
-        Choice { reason, ..self.choice(&cache, method, ahead, pixels) }
+        MethodChoice { reason, ..self.choice(&cache, method, ahead, pixels) }
     }
 
-    /// Number of paths a pixel that are as good as `cache` on a film of so many pixels.
+    /// Returns the number of paths per pixel with the quality of `cache` on a film of so many pixels.
     fn paths_like(&self, cache: &Method, pixels: u64) -> f64 {
         let spp = f64::from(cache.spp());
         spp * self.pilot.paths_a_sample(spp, pixels)
     }
 
-    fn cheaper(&self, cache: &Method, pixels: u64) -> Choice {
-        let work = Work::new(self.triangles, pixels);
+    /// Chooses the cheaper method on a film of so many pixels.
+    fn cheaper(&self, cache: &Method, pixels: u64) -> MethodChoice {
+        let work = ExpectedWork::new(self.triangles, pixels);
         let spp = self.paths_like(cache, pixels).round();
         let paths = path::Settings { spp: spp.clamp(1.0, f64::from(u32::MAX)) as u32, ..self.paths };
         let by_cache = work.of_cache(&self.pilot, cache);
@@ -160,15 +168,15 @@ impl Chooser {
         }
     }
 
-    /// The choice of `method` on a film of so many pixels, where the other is, or is compared with, `cache`.
-    fn choice(&self, cache: &Method, method: Method, ahead: f64, pixels: u64) -> Choice {
-        let Pilot { rays_of_drawn, rays_of_paths, rays, seldom, .. } = self.pilot;
-        Choice {
+    /// Describes the choice of `method` on a film of so many pixels, if `cache` is one of the two compared.
+    fn choice(&self, cache: &Method, method: Method, ahead: f64, pixels: u64) -> MethodChoice {
+        let Pilot { rays_of_sampled, rays_of_paths, rays, seldom, .. } = self.pilot;
+        MethodChoice {
             method,
             reason: Reason::Work,
             ahead,
             paths_a_sample: self.pilot.paths_a_sample(f64::from(cache.spp()), pixels),
-            rays_ratio: rays_of_paths / rays_of_drawn.max(f64::MIN_POSITIVE),
+            rays_ratio: rays_of_paths / rays_of_sampled.max(f64::MIN_POSITIVE),
             pilot_rays: rays,
             seldom,
         }
@@ -179,13 +187,12 @@ impl Chooser {
 mod tests {
     use super::*;
 
-    /// A film of 512 by 512 in a scene of so many triangles; variances of drawn light and of paths, and rays of
-    /// both.
+    /// Creates a chooser for a film of 512 by 512, from variances and rays of sampled light and of paths.
     fn chooser(triangles: usize, variances: [f64; 2], rays: [f64; 2]) -> Chooser {
         let pilot = Pilot {
-            variance_of_drawn: variances[0],
+            variance_of_sampled: variances[0],
             variance_of_paths: variances[1],
-            rays_of_drawn: rays[0],
+            rays_of_sampled: rays[0],
             rays_of_paths: rays[1],
             rays: 1_000_000,
             seldom: 0.0,
@@ -193,12 +200,12 @@ mod tests {
         Chooser { triangles, pilot, film_pixels: 1 << 18, paths: path::Settings::default() }
     }
 
-    /// The findings in a box lit by its ceiling's lamp.
+    /// Creates a chooser with the pilot of a box lit by an area light.
     fn in_box() -> Chooser {
         chooser(36, [0.0018, 0.2], [1.7, 4.5])
     }
 
-    fn is_path(choice: &Choice) -> bool {
+    fn is_path(choice: &MethodChoice) -> bool {
         assert!(choice.ahead >= 1.0, "{choice:?}");
         matches!(choice.method, Method::Path(_))
     }
@@ -231,7 +238,7 @@ mod tests {
         assert!(!is_path(&in_box().as_good_as(&cache)));
         let choice = chooser(100_000, [3.0, 3.5], [5.0, 4.5]).as_good_as(&cache);
         assert!(is_path(&choice) && choice.method.spp() >= cache.spp(), "{choice:?}");
-        // Virtual lights are as many on a small film; an icon is judged as if it were less small, but for its time.
+        // The number of virtual lights does not depend on the film.
         let noisier = |film_pixels| Chooser { film_pixels, ..chooser(36, [0.0018, 4.0], [1.7, 4.5]) };
         let small = noisier(1 << 10);
         assert!(!is_path(&small.as_good_as(&cache)) && is_path(&small.on_film(&cache)));

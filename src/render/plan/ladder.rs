@@ -1,81 +1,64 @@
-//! The quality scale: settings from cheap to exact, one number for all of them.
-//!
-//! Values between the levels of a method's own table ([`crate::method::Move`]) interpolate its factors
-//! geometrically, so that a plan need not jump.
+//! The quality scale of a method, with the limits of a plan.
 
-use crate::method::{Method, Move, RUNGS};
+use crate::method::{LEVELS, Method, ScaleLimits, ScaledSetting};
 use base::film::Window;
 use base::stats::available_bytes;
 
-/// Heights that have names: a draft ...
+/// Level of a draft.
 pub const DRAFT: f64 = 2.0;
-/// ... a preview ...
+/// Level of a preview.
 pub const PREVIEW: f64 = 3.0;
-/// ... for pictures to keep ...
+/// Level of a final image.
 pub const FINAL: f64 = 5.0;
-/// ... and for references. Path tracing has no bias, but in the time of this more than twice the error.
+/// Level of a reference. Path tracing has no bias, but more than twice the error in the same time.
 pub const REFERENCE: f64 = 7.0;
 
-/// A method's settings by height.
+/// Maximum number of doublings of the default samples that are tried for the memory available.
+const MAX_DOUBLINGS: u32 = 16;
+
+/// Settings of a method by level of quality.
 #[derive(Clone, Debug)]
 pub struct Ladder {
     base: Method,
-    /// Keys of settings that stay as they are.
-    held: Vec<&'static str>,
-    most_spp: u32,
+    limits: ScaleLimits,
 }
 
 impl Ladder {
-    /// Creates the scale around the settings of `base`, except those pinned in `held`; `None` for a method
-    /// without one.
-    pub fn new(base: Method, held: &[&'static str]) -> Option<Ladder> {
-        let known = !base.ladder().is_empty();
-        known.then(|| Ladder { base, held: held.to_vec(), most_spp: u32::MAX })
+    /// Creates the scale around the settings of `base`, except the pinned ones; `None` if the method has no scale.
+    pub fn new(base: Method, pinned: &[ScaledSetting]) -> Option<Ladder> {
+        let limits = ScaleLimits { pinned: pinned.to_vec(), max_spp: u32::MAX };
+        base.as_scales().map(|_| Ladder { base, limits })
     }
 
-    /// Holds one more setting.
-    pub fn hold(&mut self, key: &'static str) {
-        self.held.push(key);
+    /// Pins one more setting.
+    pub fn pin(&mut self, setting: ScaledSetting) {
+        self.limits.pinned.push(setting);
     }
 
-    /// Of no more samples of `window` than fit into the memory that is there.
+    /// Limits the samples of `window` to those that fit into the memory available.
     pub fn within(mut self, window: &Window) -> Ladder {
         let needed = |spp: u32| {
             let mut method = self.base;
-            method.set_number("spp", 0, f64::from(spp));
+            method.set_spp(spp);
             method.expected_bytes(window)
         };
         if let Some(bytes) = available_bytes().filter(|_| needed(2) > needed(1)) {
-            let doubled = (0..16).map(|k| self.base.spp().saturating_mul(1 << k));
-            self.most_spp = doubled.take_while(|&spp| needed(spp) <= bytes).last().unwrap_or(1);
+            let doubled = (0..MAX_DOUBLINGS).map(|k| self.base.spp().saturating_mul(1 << k));
+            self.limits.max_spp = doubled.take_while(|&spp| needed(spp) <= bytes).last().unwrap_or(1);
         }
         self
     }
 
     /// Returns the last level; the first is 0.
     pub fn top(&self) -> f64 {
-        (RUNGS - 1) as f64
+        (LEVELS - 1) as f64
     }
 
-    /// The method with the settings at `height`.
-    pub fn at(&self, height: f64) -> Method {
-        self.between(height, height)
-    }
-
-    /// The same, cuts as fine as at `fine` and the numbers of samples, virtual lights and patches as at `coarse`.
-    pub fn between(&self, coarse: f64, fine: f64) -> Method {
+    /// Returns the method with the settings at `level`.
+    pub fn at(&self, level: f64) -> Method {
         let mut method = self.base;
-        for moved in self.base.ladder().iter().filter(|moved| !self.held.contains(&moved.key)) {
-            let Some(base) = self.base.number(moved.key) else { continue };
-            let factor = factor(if moved.fine { fine } else { coarse }, &moved.factors);
-            let value = base * factor;
-            let value = match moved.key {
-                "spp" => value.round().clamp(1.0, f64::from(self.most_spp)),
-                _ if factor == 1.0 => base,
-                // Three significant digits are enough; shorter numbers are easier to type again.
-                _ => format!("{value:.2e}").parse().unwrap_or(base),
-            };
-            method.set_number(moved.key, 0, value);
+        if let Some(scales) = method.as_scales_mut() {
+            scales.scale(level, &self.limits);
         }
         method
     }
@@ -83,21 +66,8 @@ impl Ladder {
 
 /// Returns the command-line options of the settings of `method` that the scale moves.
 pub fn options(method: &Method) -> String {
-    let option = |moved: &Move| {
-        let text = method.text(moved.key)?;
-        Some(format!("--{} {text}", moved.key.replace('_', "-")))
-    };
-    method.ladder().iter().filter_map(option).collect::<Vec<_>>().join(" ")
-}
-
-/// Returns a factor at `height`, which is clamped to the first and the last level.
-fn factor(height: f64, factors: &[f64; RUNGS]) -> f64 {
-    let height = height.clamp(0.0, (RUNGS - 1) as f64);
-    let below = (height as usize).min(RUNGS - 2);
-    let (a, b) = (factors[below], factors[below + 1]);
-    let part = height - below as f64;
-    // Exact on the levels, where logarithms would round.
-    if part == 0.0 { a } else { a * (b / a).powf(part) }
+    let mut method = *method;
+    method.as_scales_mut().map_or_else(String::new, |scales| scales.options())
 }
 
 #[cfg(test)]
@@ -105,18 +75,23 @@ mod tests {
     use super::*;
 
     #[test]
-    fn settings_get_finer_with_height() {
+    fn settings_get_finer_with_the_level() {
         let names = ["reconstruction", "cache", "lightcuts", "path"];
         for base in names.map(|name| Method::named(name).unwrap()) {
             let ladder = Ladder::new(base, &[]).unwrap();
             let mut before: Option<Method> = None;
             for k in 0..=32 {
                 let now = ladder.at(f64::from(k) * 0.25);
-                let numbers = |m: &Method| ["spp", "max_cut", "vpls"].map(|key| m.number(key).unwrap_or(0.0));
-                let epsilon = |m: &Method| m.number("epsilon").unwrap_or(0.0);
+                let number = |mut method: Method, setting: ScaledSetting| {
+                    let value = method.as_scales_mut().unwrap().scaled(setting);
+                    value.map_or(0.0, |value| value.numbers()[0])
+                };
+                let counts = [ScaledSetting::Spp, ScaledSetting::MaxCut, ScaledSetting::Vpls];
+                let numbers = |method: Method| counts.map(|setting| number(method, setting));
+                let epsilon = |method: Method| number(method, ScaledSetting::Epsilon);
                 if let Some(before) = before {
-                    assert!(numbers(&before).iter().zip(numbers(&now)).all(|(a, b)| *a <= b), "{k} {now:?}");
-                    assert!(epsilon(&before) >= epsilon(&now), "{k} {now:?}");
+                    assert!(numbers(before).iter().zip(numbers(now)).all(|(a, b)| *a <= b), "{k} {now:?}");
+                    assert!(epsilon(before) >= epsilon(now), "{k} {now:?}");
                 }
                 before = Some(now);
             }
@@ -128,11 +103,11 @@ mod tests {
     #[test]
     fn what_is_typed_stays_and_numbers_read_back() {
         let base = Method::named("reconstruction").unwrap();
-        let keys: Vec<_> = base.ladder().iter().map(|moved| moved.key).collect();
-        assert_eq!(Ladder::new(base, &keys).unwrap().at(0.7).settings(), base.settings());
+        let all: Vec<_> = base.as_scales().unwrap().moves().iter().map(|moved| moved.setting).collect();
+        assert_eq!(Ladder::new(base, &all).unwrap().at(0.7).settings(), base.settings());
         let found = Ladder::new(base, &[]).unwrap().at(1.37);
         let text = options(&found);
-        // Refused where there are no records.
+        // The method has no records.
         assert!(text.len() < 120 && !text.contains("--record-epsilon"), "{text}");
         let mut again = base;
         for option in text.split("--").skip(1) {
@@ -143,7 +118,7 @@ mod tests {
     }
 
     #[test]
-    fn rungs_are_exact() {
+    fn levels_are_exact() {
         let ladder = Ladder::new(Method::named("reconstruction").unwrap(), &[]).unwrap();
         assert_eq!(
             options(&ladder.at(4.0)),

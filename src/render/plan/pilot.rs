@@ -1,99 +1,102 @@
-//! A pilot of the cache's drawn light and of paths, at a few pixels: how noisy a sample of either is as a denoised
-//! picture feels it, and how many rays it takes.
+//! Pilot of the light that the cache samples, and of paths, at a few pixels: the noise of a sample in a denoised image,
+//! and its rays.
 //!
-//! Every pixel is sampled twice by either method; half the squared difference estimates the variance of its mean,
-//! stratification included. It is relative to the brightness of the square of pixels around, and the greatest hundredth
-//! is left out: a denoiser removes single bright dots.
+//! Each method samples every pixel twice. Half the squared difference estimates the variance of a mean, with the effect
+//! of stratification. It is relative to the brightness of the square of pixels around. The greatest 1 % is left out,
+//! since a denoiser removes single bright dots.
 //!
-//! Light of small lamps by glass and mirrors is rarely found by paths, and not at all by so few. The photons of the
-//! cache tell how much of it there is, and how noisy paths are that find it.
+//! Paths seldom find light of small emitters through glass and over mirrors, and the pilot's few paths do not. The
+//! photons of the cache estimate that light, and the noise of paths that find it.
 //!
-//! Measured on 32 scenes, 128x128 to 512x910 (38 pictures, half of them of scenes made to find what the cache does
-//! badly): paths as many as [`Pilot::paths_a_sample`] says make as good a picture within a factor of 1.9 (root mean
-//! square), and the work of one method over that of the other is as predicted within a factor of 2.1. The
-//! pilot does not see errors of the cache itself, as of light through small windows and by sharp lobes.
+//! The pilot does not see errors of the cache itself, for instance of light through small windows and by sharp lobes.
 //!
-//! The pilot is spread over the whole film and has seeds of its own: parts of a picture, and pictures to be merged, are
-//! by the same method.
+//! The pilot covers the whole film and has seeds of its own. So crops of an image, and images to be merged, have the
+//! same method.
 
-use crate::method::{DrawnPixels, LightStore, Method, PILOT_SPP};
+use crate::method::{LightStore, Method, PILOT_SPP, SampledPixels};
 use base::film::Window;
 use base::progress::Control;
 use transport::eye::ByPhotons;
 use world::World;
 use world::view::View;
 
-/// Pixels along the edge of a square.
+/// Side of a square in pixels.
 const SQUARE: u32 = 4;
-/// Least and largest number of squares, and the number of the film's pixels for each of them: a sixty-fourth of a
-/// film is sampled, less of a large one, by as many samples as the default has; so those of two methods take about a
-/// thirtieth of its rays.
+/// Minimum number of squares.
 const MIN_SQUARES: u64 = 16;
+/// Maximum number of squares.
 const MAX_SQUARES: u64 = 256;
+/// Number of film pixels for each square, so that 1/64 of a film is sampled.
 const PIXELS_A_SQUARE: u64 = 1024;
 /// Seed of the places of squares.
 const SEED: u32 = 0x6c62_272e;
-/// Share of the pixels, those that count most, that is left out.
+/// Share of the pixels with the greatest differences, which is left out.
 const TRIMMED: f64 = 0.01;
-/// Luminance that counts as dark, relative to that which nine tenths of the pixels keep below.
+/// Luminance that counts as dark, over the 90th percentile.
 const DARK: f64 = 0.1;
-/// Paths that are worth a sample and those that follow it, where paths have as much variance, and the exponent by which
-/// they grow with it. A denoiser takes off most of the noise, whatever its variance, and leaves edges.
-const WORTH: f64 = 1.8;
+/// Number of paths that replace a sample of the cache, with its extra samples, if both have the same variance.
+const PATHS_PER_SAMPLE: f64 = 1.8;
+/// Exponent by which that number grows with the quotient of the variances. A denoiser removes most noise, whatever its
+/// variance, and leaves edges.
 const BY_VARIANCE: f64 = 0.33;
-/// Exponent by which they grow as the film gets smaller than so many pixels: the more of a film is edges, the more the
-/// further samples gain that go there.
+/// Exponent by which that number grows below [`SMALL`] pixels. Extra samples gain more if more of a film is edges.
 const BY_SMALLNESS: f64 = 0.25;
+/// Number of pixels of a small film.
 const SMALL: f64 = 262_144.0;
-/// Variance that the cache's own errors come to at its default of so many samples, relative to the squared brightness
-/// and times their number; inversely as the square of the samples, since levels of quality with fewer samples have
-/// fewer virtual lights and coarser cuts, too.
+/// Variance of the cache's own errors at [`CACHED_SPP`] samples, times their number, over the squared brightness.
+///
+/// The variance is in inverse proportion to the square of the samples, since lower levels of quality have fewer virtual
+/// lights and coarser cuts, too.
 const CACHED: f64 = 0.004;
+/// Samples per pixel of [`CACHED`].
 const CACHED_SPP: f64 = 16.0;
 
-/// Paths that a denoiser takes together: light that fewer than one of them finds is taken off as single bright dots,
-/// and its whole is the error. Light that more of them find is in the noise of the pilot's paths.
+/// Number of paths that a denoiser pools. Light that fewer than one of them finds is removed as single bright dots, so
+/// that all of it is error. Light that more of them find is in the noise of the pilot's paths.
 const POOLED: f64 = 10_000.0;
 
-/// Findings of the pilot.
+/// Results of the pilot.
 #[derive(Clone, Copy, Debug)]
 pub struct Pilot {
-    /// Variance, relative to the squared brightness, of a sample of the light that the cache draws.
-    pub variance_of_drawn: f64,
-    /// The same of a path.
+    /// Variance of a sample of the cache, over the squared brightness.
+    pub variance_of_sampled: f64,
+    /// Variance of a path, over the squared brightness.
     pub variance_of_paths: f64,
-    /// Rays of a sample of the light that the cache draws.
-    pub rays_of_drawn: f64,
-    /// Rays of a path.
+    /// Rays per sample of the cache.
+    pub rays_of_sampled: f64,
+    /// Rays per path.
     pub rays_of_paths: f64,
-    /// Rays traced to find all this.
+    /// Rays of the pilot.
     pub rays: u64,
-    /// Share of the light that so few paths find that it is not in their noise.
+    /// Share of the light that paths find too seldom for it to be in their noise.
     pub seldom: f64,
 }
 
 impl Pilot {
-    /// Samples squares of the film by both methods; `None` if `cache` draws no light, if none is found, or if
-    /// cancelled.
+    /// Samples squares of the film by the cache and by paths.
+    ///
+    /// The result is `None` if the cache samples no light, if the film is dark, or if cancelled.
     pub fn of(
-        (world, lights): (&World, &LightStore),
+        world: &World,
+        lights: &LightStore,
         view: &View,
-        cache: &Method,
-        path: &Method,
+        methods: [&Method; 2],
         control: &Control,
     ) -> Option<Pilot> {
         let squares = squares(view.window.film);
-        let drawn = cache.draw_pixels(world, lights, view, &squares, control)?;
-        let paths = path.draw_pixels(world, lights, view, &squares, control)?;
-        Pilot::by(squares[0].len(), &drawn, &paths)
+        let sample =
+            |method: &Method| method.as_pilots()?.sample_pixels(world, lights, view, &squares, control);
+        let [cache, path] = methods;
+        let (sampled, paths) = (sample(cache)?, sample(path)?);
+        Pilot::by(squares[0].len(), &sampled, &paths)
     }
 
-    /// By the light of squares of so many pixels each.
-    fn by(square: usize, drawn: &DrawnPixels, paths: &DrawnPixels) -> Option<Pilot> {
+    /// Evaluates the light of squares of so many pixels each.
+    fn by(square: usize, sampled: &SampledPixels, paths: &SampledPixels) -> Option<Pilot> {
         let [a, b] = &paths.luminances;
         let is_lost = |photons: &&ByPhotons| photons.square > POOLED * photons.mean.powi(2);
         let lost =
-            |square: usize| drawn.photons.get(square).filter(is_lost).map_or(0.0, |photons| photons.mean);
+            |square: usize| sampled.photons.get(square).filter(is_lost).map_or(0.0, |photons| photons.mean);
         let found = a.iter().zip(b).enumerate();
         let means: Vec<f64> = found.map(|(pixel, (a, b))| 0.5 * (a + b) + lost(pixel / square)).collect();
         let brightness: Vec<f64> = means.chunks(square).map(mean).collect();
@@ -104,7 +107,7 @@ impl Pilot {
             return None;
         }
         let weight = |pixel: usize| (brightness[pixel / square] + dark).powi(-2);
-        let variance = |light: &DrawnPixels| {
+        let variance = |light: &SampledPixels| {
             let [a, b] = &light.luminances;
             let differences = a.iter().zip(b).enumerate();
             let half_squares = differences.map(|(pixel, (a, b))| 0.5 * (a - b).powi(2) * weight(pixel));
@@ -113,26 +116,28 @@ impl Pilot {
         let lost_squares = (0..brightness.len()).map(|i| lost(i).powi(2) * weight(i * square));
         let variance_of_lost = POOLED * mean(lost_squares.collect::<Vec<_>>());
         Some(Pilot {
-            variance_of_drawn: variance(drawn),
+            variance_of_sampled: variance(sampled),
             variance_of_paths: variance(paths).max(variance_of_lost),
-            rays_of_drawn: drawn.rays_a_sample,
+            rays_of_sampled: sampled.rays_a_sample,
             rays_of_paths: paths.rays_a_sample,
-            rays: drawn.rays + paths.rays,
+            rays: sampled.rays + paths.rays,
             seldom: mean((0..brightness.len()).map(lost).collect::<Vec<_>>()) / mean(&brightness),
         })
     }
 
-    /// Number of paths, denoised, that are worth a sample of the cache, denoised, at the level of quality with `spp`
-    /// samples on a film of so many pixels; 1 at least, since edges are as jagged by either.
+    /// Returns the number of paths that replace a sample of the cache in a denoised image; at least 1, since edges have
+    /// the same aliasing.
+    ///
+    /// The quality is that of the level with `spp` samples, on a film of so many pixels.
     pub fn paths_a_sample(&self, spp: f64, film_pixels: u64) -> f64 {
         let cached = CACHED * (CACHED_SPP / spp.max(1.0)).powi(2);
-        let quotient = self.variance_of_paths / (self.variance_of_drawn + cached);
+        let quotient = self.variance_of_paths / (self.variance_of_sampled + cached);
         let smallness = (SMALL / film_pixels.max(1) as f64).max(1.0);
-        (WORTH * quotient.powf(BY_VARIANCE) * smallness.powf(BY_SMALLNESS)).max(1.0)
+        (PATHS_PER_SAMPLE * quotient.powf(BY_VARIANCE) * smallness.powf(BY_SMALLNESS)).max(1.0)
     }
 }
 
-/// Pixels of the squares, the same for every crop of a film.
+/// Returns the pixels of the squares. They are the same for every crop of a film.
 fn squares(film: [u32; 2]) -> Vec<Vec<[u32; 2]>> {
     let pixels = u64::from(film[0]) * u64::from(film[1]);
     let count = (pixels / PIXELS_A_SQUARE).clamp(MIN_SQUARES, MAX_SQUARES) as u32;
@@ -155,9 +160,9 @@ mod tests {
     use super::*;
     use base::sampling::hash;
 
-    /// Light of squares of sixteen pixels that alternate between two radiances, times 1 ± noise of the given variance
-    /// a sample.
-    fn light(radiances: [f64; 2], variance: f64, seed: u32) -> DrawnPixels {
+    /// Creates light of squares of sixteen pixels that alternate between two radiances, with relative noise of a given
+    /// variance per sample.
+    fn light(radiances: [f64; 2], variance: f64, seed: u32) -> SampledPixels {
         let sigma = (12.0 * variance / f64::from(PILOT_SPP)).sqrt();
         let set = |set: u32| {
             let pixel = |i: u32| {
@@ -166,18 +171,18 @@ mod tests {
             };
             (0..16 * 512).map(pixel).collect()
         };
-        DrawnPixels::new([set(0), set(1)], 1 << 20, 5)
+        SampledPixels::new([set(0), set(1)], 1 << 20, 5)
     }
 
     #[test]
     fn variances_are_those_of_samples() {
         for (radiances, has_edges) in [([1.0, 1.0], false), ([0.5, 1.5], true)] {
             let pilot = Pilot::by(16, &light(radiances, 0.02, 1), &light(radiances, 0.3, 7)).unwrap();
-            // Darkness counts as a tenth of the brightest tenth, here 1 or 1.5; mean squares of the radiances are 1
-            // or 1.25; of uniform noise the hundredth left out holds a twentieth.
+            // Dark is a tenth of the 90th percentile, here 1 or 1.5. Mean squares of the radiances are 1 or 1.25. The
+            // hundredth of uniform noise that is left out has a twentieth of the variance.
             let (scale, squares) = if has_edges { (1.0 / 1.15f64.powi(2), 1.25) } else { (1.0 / 1.21, 1.0) };
             let near = |found: f64, expected: f64| (found / expected - 1.0).abs() < 0.12;
-            assert!(near(pilot.variance_of_drawn, 0.02 * squares * scale), "{pilot:?}");
+            assert!(near(pilot.variance_of_sampled, 0.02 * squares * scale), "{pilot:?}");
             assert!(near(pilot.variance_of_paths, 0.3 * squares * scale), "{pilot:?}");
             assert_eq!(pilot.rays, (1 << 21) + 10);
         }
@@ -189,7 +194,7 @@ mod tests {
         let mut dotted = light([1.0, 1.0], 0.02, 1);
         (0..16 * 512).step_by(200).for_each(|i| dotted.luminances[0][i] = 1e3);
         let pilot = Pilot::by(16, &dotted, &even).unwrap();
-        assert!((pilot.variance_of_drawn / pilot.variance_of_paths - 1.0).abs() < 0.1, "{pilot:?}");
+        assert!((pilot.variance_of_sampled / pilot.variance_of_paths - 1.0).abs() < 0.1, "{pilot:?}");
     }
 
     #[test]
@@ -197,19 +202,19 @@ mod tests {
         let [even, paths] = [1, 7].map(|seed| light([1.0, 1.0], 0.02, seed));
         let with = |mean: f64, square: f64| {
             let photons = vec![ByPhotons { mean, square }; 512];
-            Pilot::by(16, &DrawnPixels { photons, ..light([1.0, 1.0], 0.02, 1) }, &paths).unwrap()
+            Pilot::by(16, &SampledPixels { photons, ..light([1.0, 1.0], 0.02, 1) }, &paths).unwrap()
         };
         let none = Pilot::by(16, &even, &paths).unwrap();
         assert_eq!(with(0.0, 0.0).variance_of_paths, none.variance_of_paths);
         let near = |found: f64, expected: f64| (found / expected - 1.0).abs() < 0.05;
-        // Relative to the squared brightness, and a tenth of it that counts as dark.
+        // The brightness has a tenth added that counts as dark.
         let of_lost = |mean: f64| POOLED * (mean / (1.1 * (1.0 + mean))).powi(2);
         assert!(near(with(0.1, 101.0).variance_of_paths, of_lost(0.1)));
         assert!(near(with(0.1, 101.0).seldom, 0.1 / 1.1));
-        // Light that they find often enough is in their own noise.
+        // Light that paths find often enough is in their own noise.
         assert_eq!(with(0.1, 99.0).variance_of_paths, none.variance_of_paths);
         assert_eq!(with(0.1, 99.0).seldom, 0.0);
-        // A lamp that no path can meet.
+        // An emitter that no path can hit.
         assert!(near(with(0.01, f64::MAX).variance_of_paths, of_lost(0.01)));
         assert!(with(0.3, 1e18).paths_a_sample(16.0, 1 << 18) > 5.0 * none.paths_a_sample(16.0, 1 << 18));
     }

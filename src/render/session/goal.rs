@@ -1,61 +1,77 @@
 //! The goal of a frame.
 
 use crate::denoise::Quality;
-use crate::method::Method;
-use crate::verify;
+use crate::method::{Method, ScaledSetting};
+use crate::verify::VerifySettings;
 use base::stats::Stopwatch;
 use transport::eye::Features;
 
-/// A method, the goal that its settings are planned for, and the verification of the picture's error.
+/// A method, the goal that its settings are planned for, and what happens to the image afterwards.
 #[derive(Clone, Debug, Default)]
 pub struct Goal {
     /// The method and its settings, from which plans start.
     pub method: Method,
-    /// True if another method may be taken in its place, where a pilot finds it better.
+    /// True if a pilot may choose another method.
     pub may_choose: bool,
     /// Goal that settings are planned for.
-    pub wanted: Wanted,
-    /// Features of the surfaces seen that are wanted beside the colour.
+    pub plan: PlanGoal,
+    /// Features of the visible surfaces that are wanted as layers.
     pub features: Features,
-    /// True if the picture is to be denoised; by default, if the method's pictures are meant to be.
+    /// True if the image is to be denoised. By default, images of methods that leave noise are.
     pub denoise: Option<bool>,
-    /// Quality of denoising; by default, one that goes with the work on the picture.
+    /// Quality of denoising. By default, it depends on the work on the image.
     pub denoise_quality: Option<Quality>,
-    /// True if the picture before denoising is kept as layer `noisy`.
+    /// True if the image before denoising is kept as layer `noisy`.
     pub keep_noisy: bool,
-    /// Settings of the verification of the picture's error, if any.
-    pub verify: Option<verify::Settings>,
+    /// Settings of the verification of the image's error, if it is wanted.
+    pub verify: Option<VerifySettings>,
 }
 
 impl Goal {
-    /// True if the picture is to be denoised.
+    /// True if the image is to be denoised.
     pub fn denoises(&self) -> bool {
         self.denoise.unwrap_or(self.method.leaves_noise())
+    }
+
+    /// Returns the start of the run whose time is planned, if one is.
+    pub fn run(&self) -> Option<&Stopwatch> {
+        match &self.plan {
+            PlanGoal::Time(time) => Some(&time.run),
+            PlanGoal::AsSet | PlanGoal::Error(_) => None,
+        }
     }
 }
 
 /// Source of settings.
 #[derive(Clone, Debug, Default)]
-pub enum Wanted {
-    /// From the method as it is.
+pub enum PlanGoal {
+    /// The settings of the method as they are.
     #[default]
     AsSet,
-    /// From a plan for a whole run of a given time.
-    Time {
-        /// Seconds from the start of the run to written files.
-        seconds: f64,
-        /// Start of the run.
-        run: Stopwatch,
-        /// Keys of settings that the plan leaves alone.
-        held: Vec<&'static str>,
-    },
-    /// From a search for a measured error.
-    Error {
-        /// Relative RMS error.
-        error: f64,
-        /// Maximum number of paths at a pixel whose error is measured.
-        max_samples: u32,
-        /// Keys of settings that the search leaves alone.
-        held: Vec<&'static str>,
-    },
+    /// A plan for a complete run of a given time.
+    Time(TimeGoal),
+    /// A search for a measured error.
+    Error(ErrorLimit),
+}
+
+/// Time of a run.
+#[derive(Clone, Debug)]
+pub struct TimeGoal {
+    /// Seconds from the start of the run to written files.
+    pub seconds: f64,
+    /// Start of the run.
+    pub run: Stopwatch,
+    /// Settings that the plan does not change.
+    pub pinned: Vec<ScaledSetting>,
+}
+
+/// Maximum error of an image.
+#[derive(Clone, Debug)]
+pub struct ErrorLimit {
+    /// Relative RMS error.
+    pub error: f64,
+    /// Maximum number of paths at a pixel whose error is measured.
+    pub max_samples: u32,
+    /// Settings that the search does not change.
+    pub pinned: Vec<ScaledSetting>,
 }

@@ -1,4 +1,4 @@
-//! A session: one scene held ready, and frames rendered of it.
+//! A session: a scene that is ready to render, and its frames.
 //!
 //! ```no_run
 //! # use lightsplat::{film::write_exr, progress::Control, session::{Goal, Session}, view::{Framing, View}};
@@ -10,21 +10,28 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! The session holds what all frames share; a [`Goal`] says how a frame is rendered, or what its settings are to be
-//! planned for, and how its error is measured; a [`Frame`] holds the picture and all that is reported about it.
+//! The session holds all that frames share. A [`Goal`] sets how a frame is rendered, what its settings are planned for,
+//! and how its error is measured. A [`RenderedFrame`] holds the image and all that is reported about it.
 
+mod context;
+mod error;
 mod finish;
+mod finishing_time;
+mod former;
 mod frame;
+mod frame_report;
 mod goal;
+mod next_frame;
+mod notes;
 mod planned;
 mod render;
 mod report;
 
+pub use error::FrameError;
 pub use finish::Finish;
-pub use frame::{BLACK, Frame, Remark};
-pub use goal::{Goal, Wanted};
-pub use render::FrameError;
-pub(crate) use render::{Former, Kept};
+pub(crate) use former::{Former, VisibleDifferences, WalkState};
+pub use frame::{BLACK, Remark, RenderedFrame};
+pub use goal::{ErrorLimit, Goal, PlanGoal, TimeGoal};
 
 pub use transport::eye::{Feature, Features, UnknownFeature};
 
@@ -113,7 +120,7 @@ mod tests {
     use world::view::{Framing, View};
 
     #[test]
-    fn frames_of_a_session_share_lights_and_each_is_as_if_alone() {
+    fn frames_of_a_session_share_lights_and_have_the_bits_of_single_frames() {
         let scene = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/cornell.toml");
         let open = || Session::open(&scene, &LoadOptions::default()).unwrap().session;
         let mut settings = reconstruction::Settings { spp: 1, ..Default::default() };
@@ -125,14 +132,14 @@ mod tests {
             let view = View::new(&session.cameras, &framing(crop)).unwrap();
             session.frame(&view, &goal(settings), &Control::new()).unwrap()
         };
-        let lights = |frame: &Frame| frame.stats.get("VPLs/total");
+        let lights = |frame: &RenderedFrame| frame.stats.get("VPLs/total");
         let first = frame(&session, settings, None);
         assert!(matches!(lights(&first), Some(Counter::Count(n)) if n > 2000));
         let crop = Some([[5, 7], [20, 10]]);
         let second = frame(&session, settings, crop);
         assert_eq!(lights(&second), None);
         assert_eq!(second.film.color, frame(&open(), settings, crop).film.color);
-        // Other lights are made where others are wanted.
+        // Other settings make other lights.
         settings.light.indirect = 3000;
         assert!(lights(&frame(&session, settings, None)).is_some());
     }

@@ -1,53 +1,54 @@
-//! Reports of a frame: its plan and its measured error, for statistics, metadata and people.
+//! Reports of a plan and of the measured error, for statistics, metadata and users.
 
 use super::frame::Remark;
+use super::notes::Notes;
 use crate::method::Method;
-use crate::plan::{Choice, Reason};
-use crate::verify::{Estimate, Settings, Verified};
+use crate::plan::{MethodChoice, Reason};
+use crate::verify::{Estimate, Verified, VerifySettings};
 use base::film::Metadata;
 use base::stats::Stats;
 use serde_json::{Value, json};
 use transport::paths::Estimand;
 
-/// Remarks about a plan for a time, of whose `planned` seconds `before` have passed.
+/// Returns remarks about a plan for a time, of whose `planned` seconds `before` have passed.
 pub(super) fn of_time(asked: f64, [before, planned]: [f64; 2], in_reach: bool, options: &str) -> Vec<Remark> {
     let mut remarks = Vec::new();
     if !in_reach {
         let rest = planned - before;
         remarks.push(Remark::Warning(format!(
-            "{asked} s are too short: {before:.2} s have passed with reading the scene and planning, and the picture by \
-             the cheapest settings is planned to take {rest:.2} s more"
+            "{asked} s are too short: reading the scene and planning took {before:.2} s, and the image with the cheapest \
+             settings is expected to take {rest:.2} s more"
         )));
     }
     remarks.push(Remark::Note(format!("planned for {asked} s on this machine, this time: {options}")));
     remarks
 }
 
-/// Remarks about a plan for an error; `missed` is the measured error if it is not known to be as low as asked.
+/// Returns remarks about a plan for an error. `missed` is the measured error if it does not meet the goal.
 pub(super) fn of_error(asked: f64, options: &str, missed: Option<Estimate>) -> Vec<Remark> {
     let asked = 100.0 * asked;
     let mut remarks = vec![Remark::Note(format!("planned for an error of {asked} %: {options}"))];
     if let Some(rms) = missed {
         let [value, low, high] = [rms.value, rms.low, rms.high].map(|x| 100.0 * x);
         remarks.push(Remark::Warning(format!(
-            "the error is not known to be {asked} % or less: {value:.2} % ({low:.2} to {high:.2}); more --verify or \
-             --verify-samples may tell more"
+            "the error may be above {asked} %: {value:.2} % ({low:.2} to {high:.2}); more --verify or --verify-samples \
+             narrow the interval"
         )));
     }
     remarks
 }
 
-/// Remark about a method that was given up because the error that it comes to is as high as `missed`.
+/// Returns a remark about the cache, whose error of `missed` did not meet the goal.
 pub(super) fn of_missed(missed: f64) -> Remark {
-    Remark::Note(format!("cache came to an error of {:.2} %, so paths were tried", 100.0 * missed))
+    Remark::Note(format!("cache reached an error of {:.2} %, so paths were tried", 100.0 * missed))
 }
 
-/// Width of an interval of the measured error, over the RMS error or a hundredth, from which on it tells little.
+/// Maximum width of an informative interval, over the RMS error or 1 %.
 const WIDE: f64 = 2.0;
 
-/// Remarks on the measured error: the figures, and whether their intervals tell anything.
+/// Returns remarks on the measured error: the figures, and a warning if their intervals are too wide.
 pub(super) fn of_measured(found: &Verified) -> Vec<Remark> {
-    let told = |estimate: Estimate| {
+    let text = |estimate: Estimate| {
         // Rounded, and without the sign of zero.
         let percent = |x: f64| (1e4 * x).round() / 1e2 + 0.0;
         let [value, low, high] = [estimate.value, estimate.low, estimate.high].map(percent);
@@ -58,9 +59,9 @@ pub(super) fn of_measured(found: &Verified) -> Vec<Remark> {
     let mut remarks = vec![Remark::Note(format!(
         "error by paths at {pixels} pixels: RMS {}, bias {}, of 95 % of the pixels at most {}{hidden}; each interval \
          holds in 95 of 100 cases",
-        told(relative_rms),
-        told(relative_bias),
-        told(relative_error_95)
+        text(relative_rms),
+        text(relative_bias),
+        text(relative_error_95)
     ))];
     let most = WIDE * relative_rms.value.max(0.01);
     let is_wide = |estimate: Estimate| {
@@ -71,45 +72,47 @@ pub(super) fn of_measured(found: &Verified) -> Vec<Remark> {
         let capped = 2 * found.pixels_at_cap > pixels;
         let more = if capped { "more --verify and --verify-samples" } else { "more --verify" };
         remarks.push(Remark::Warning(format!(
-            "{pixels} pixels are too few to tell the error: an interval is more than twice as wide as it; {more} narrow it"
+            "{pixels} pixels are too few to measure the error: an interval is more than twice as wide as the error; {more} \
+             narrow it"
         )));
     }
     remarks
 }
 
-/// Share of the light that paths seldom find from which on a measurement by paths comes with a warning.
-const MUCH_SELDOM: f64 = 0.01;
+/// Share of the light seldom found by paths above which a measurement by paths comes with a warning.
+const MAX_SELDOM: f64 = 0.01;
 
-/// Adds a choice between methods to a plan, to statistics and remarks; `spp` are the samples in the end. `is_measured`
-/// is true where the picture's error is measured by paths.
+/// Adds a choice between methods to a plan, statistics and remarks.
+///
+/// `spp` are the final samples per pixel. `is_measured` is true if the error is measured by paths.
 pub(super) fn add_choice(
-    choice: &Choice,
+    choice: &MethodChoice,
     spp: u32,
     is_measured: bool,
     plan: &mut Value,
-    stats: &mut Stats,
-    remarks: &mut Vec<Remark>,
+    notes: &mut Notes,
 ) {
-    let Choice { paths_a_sample, rays_ratio, ahead, pilot_rays, seldom, reason, .. } = *choice;
+    let Notes { stats, remarks } = notes;
+    let MethodChoice { paths_a_sample, rays_ratio, ahead, pilot_rays, seldom, reason, .. } = *choice;
     let (name, other) = match choice.method {
         Method::Path(_) => (format!("paths (--method path --denoise --spp {spp})"), "cache"),
         _ => ("cache".to_owned(), "paths"),
     };
     let why = match reason {
         Reason::Work => format!(
-            "{paths_a_sample:.1} paths of {rays_ratio:.1} times the rays are worth a sample of cache, and for as good a \
-             picture {other} would take about {ahead:.1} times the work"
+            "{other} would need about {ahead:.1} times the work for the same quality ({paths_a_sample:.1} paths of \
+             {rays_ratio:.1} times the rays replace a sample of the cache)"
         ),
         Reason::NoTime => format!(
-            "no time is left for either, and the cheapest picture by {other} would take about {ahead:.1} times the work"
+            "there is no time for either method, and the cheapest image by {other} would need about {ahead:.1} times the work"
         ),
-        Reason::Missed => format!("{other} did not come to the error"),
+        Reason::Missed => format!("{other} did not reach the error"),
     };
     remarks.push(Remark::Note(format!("chose {name}: {why}")));
-    if is_measured && seldom > MUCH_SELDOM {
+    if is_measured && seldom > MAX_SELDOM {
         remarks.push(Remark::Warning(format!(
-            "{:.0} % of the light, that of small lamps by glass and mirrors, is seldom found by paths, which the error is \
-             measured by: it tells little of that light",
+            "paths, with which the error is measured, seldom find {:.0} % of the light (from small emitters through glass \
+             and over mirrors): the error does not cover that light",
             100.0 * seldom
         )));
     }
@@ -130,7 +133,7 @@ pub(super) fn add_choice(
     plan["seldom_found_by_paths"] = seldom.into();
 }
 
-/// Stores a plan in a picture's metadata; `seconds` have passed since the start of the run.
+/// Stores a plan in metadata. `seconds` have passed since the start of the run.
 pub(super) fn store_plan(plan: &Value, seconds: f64, metadata: &mut Metadata) {
     for (key, value) in plan.as_object().into_iter().flatten() {
         let name = format!("plan_{key}");
@@ -150,7 +153,12 @@ pub(super) fn store_plan(plan: &Value, seconds: f64, metadata: &mut Metadata) {
 }
 
 /// Stores the measured error in statistics and metadata.
-pub(super) fn store_error(found: &Verified, settings: &Settings, stats: &mut Stats, metadata: &mut Metadata) {
+pub(super) fn store_error(
+    found: &Verified,
+    settings: &VerifySettings,
+    stats: &mut Stats,
+    metadata: &mut Metadata,
+) {
     let errors = [
         ("relative bias", "bias", found.relative_bias),
         ("relative RMS", "rms", found.relative_rms),
@@ -176,11 +184,11 @@ pub(super) fn store_error(found: &Verified, settings: &Settings, stats: &mut Sta
     metadata.set("verified_pixels_at_cap", found.pixels_at_cap as f64);
 }
 
-/// The measured error for programs.
-pub(super) fn error_facts(found: &Verified, settings: &Settings) -> Value {
+/// Returns the measured error for programs.
+pub(super) fn error_facts(found: &Verified, settings: &VerifySettings) -> Value {
     let mut facts = json!(found);
     facts["against"] = against(settings.estimand).into();
-    facts["most_samples"] = settings.most_samples.into();
+    facts["most_samples"] = settings.max_samples.into();
     facts
 }
 
@@ -196,7 +204,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn measurements_that_tell_nothing_are_warned_of() {
+    fn wide_intervals_come_with_a_warning() {
         let estimate = |value: f64, width: f64| Estimate { value, low: value - width, high: value + width };
         let found = |bias: Estimate| Verified {
             relative_bias: bias,

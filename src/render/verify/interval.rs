@@ -1,7 +1,7 @@
 //! Confidence intervals by resampling.
 //!
-//! Paper: Efron, *Better Bootstrap Confidence Intervals*, 1987: percentiles of the estimate over resamples,
-//! shifted for bias and for skewness (BCa). Errors of pictures are skewed: few pixels hold most of the square.
+//! Paper: Efron, *Better Bootstrap Confidence Intervals*, 1987: percentiles of the estimate over resamples, shifted for
+//! bias and for skewness (BCa). Errors of images are skewed: a small part of the pixels has most of the square error.
 
 use base::sampling::hash;
 use serde::Serialize;
@@ -19,7 +19,7 @@ pub struct Estimate {
     pub value: f64,
     /// Lower end of the interval.
     pub low: f64,
-    /// Upper end.
+    /// Upper end of the interval.
     pub high: f64,
 }
 
@@ -35,8 +35,9 @@ impl Estimate {
     }
 }
 
-/// Draws for resample `r` the number of times that each of `count` items occurs. One resample at a time: all of those
-/// of a large picture would not fit into memory.
+/// Samples the number of times that each of `count` items occurs in resample `r`.
+///
+/// Resamples are made one at a time, since all resamples of a large image would not fit into memory.
 pub fn resample(times: &mut Vec<u16>, count: usize, seed: u32, r: u32) {
     times.clear();
     times.resize(count, 0);
@@ -47,8 +48,7 @@ pub fn resample(times: &mut Vec<u16>, count: usize, seed: u32, r: u32) {
     }
 }
 
-/// Computes the interval around `value`, given the estimates from resamples and the acceleration: a sixth of
-/// the skewness of the items' influences over the root of their number, 0 where not known.
+/// Computes the interval around `value`, from the estimates of resamples and their [`acceleration`] (0 if unknown).
 pub fn bca(value: f64, mut again: Vec<f64>, acceleration: f64) -> Estimate {
     again.retain(|x| x.is_finite());
     again.sort_by(f64::total_cmp);
@@ -68,7 +68,7 @@ pub fn bca(value: f64, mut again: Vec<f64>, acceleration: f64) -> Estimate {
     Estimate { value, low: end(-NORMAL_975), high: end(NORMAL_975) }
 }
 
-/// A sixth of the skewness of `influences`, whose mean is 0, over the root of their number.
+/// Returns a sixth of the skewness of `influences`, whose mean is 0, over the root of their number.
 pub fn acceleration(influences: impl Iterator<Item = f64>) -> f64 {
     let (mut squares, mut cubes) = (0.0, 0.0);
     for d in influences {
@@ -82,7 +82,7 @@ fn normal_cdf(z: f64) -> f64 {
     0.5 * libm::erfc(-z / std::f64::consts::SQRT_2)
 }
 
-/// The inverse of [`normal_cdf`] for 0 < p < 1, by bisection: it is called three times a run.
+/// Returns the inverse of [`normal_cdf`] for 0 < p < 1, by bisection.
 fn normal_quantile(p: f64) -> f64 {
     let (mut low, mut high) = (-40.0, 40.0);
     for _ in 0..100 {

@@ -1,21 +1,21 @@
-//! The picture's error from noisy values of some of its pixels.
+//! The error of an image, from noisy values of some of its pixels.
 //!
-//! A pixel's truth is estimated by K independent means of path-traced radiance. The relative square error of
-//! a channel, `(t - r)² / (r² + 0.01 m²)` as in [`base::film::metrics::rel_mse`], is biased upwards when r
-//! is noisy, by the noise's variance and by the non-linear quotient. The jackknife over the K means removes
-//! both to first order, and entirely where the denominator does not matter.
+//! K independent means of path-traced radiance estimate the truth of a pixel. The relative square error of a channel is
+//! `(t - r)² / (r² + 0.01 m²)`, as in [`base::film::metrics::rel_mse`]. Noise of r biases it upwards, by its variance
+//! and by the non-linear quotient. The jackknife over the K means removes both to first order, and entirely if the
+//! denominator does not matter.
 //!
-//! The 95th percentile is biased upwards as well. Omitting every other mean doubles the variance of the
-//! noise: from the percentile's square at one and at two parts of noise, a line extrapolates to zero noise.
-//! When noise dominates, that extrapolation is ill-conditioned (it may be negative), and the bootstrap does
-//! not reveal it: the percentile counts as unresolved, and its interval goes from 0 to the upper end of the
-//! percentile with the noise in it. Noise spreads errors, so that the percentile without it is lower.
+//! The 95th percentile is biased upwards as well. Omitting every other mean doubles the variance of the noise. The
+//! square of the percentile at one and at two parts of noise is extrapolated linearly to zero noise. If noise
+//! dominates, the extrapolation is ill-conditioned (it may be negative), and the bootstrap does not reveal it. The
+//! percentile counts as unresolved then. Its interval reaches from 0 to the upper end of the percentile with the noise,
+//! since noise spreads errors.
 //!
 //! Papers: Quenouille 1956 (jackknife); Cook and Stefanski, *Simulation-Extrapolation Estimation*, 1994.
-//! Deviations: the line is exact for errors that are all noise or all constant, approximate in between.
-//! Intervals treat picks as independent, though they are stratified; they are wide rather than narrow. A pick
-//! of probability 1 varies by the noise of its means alone, and others by a mixture according to their
-//! probability; for the percentile all vary as if drawn at random.
+//! Deviations: the line is exact for errors that are all noise or all constant, and approximate in between. Intervals
+//! treat picks as independent, though they are stratified, and so are rather too wide. A pick of probability 1 varies
+//! by the noise of its means only, others by a mixture according to their probability. For the percentile all vary as
+//! if they were picked at random.
 
 use super::interval::{Estimate, RESAMPLES, acceleration, bca, resample};
 use base::film::metrics::REL_MSE_FLOOR;
@@ -35,39 +35,40 @@ const RESOLVED: f64 = 0.5;
 /// A pixel whose error is measured.
 #[derive(Clone, Copy, Debug)]
 pub struct Measured {
-    /// Value of the pixel in the picture.
-    pub held: DVec3,
+    /// Value of the pixel in the image.
+    pub value: DVec3,
     /// Independent unbiased estimates of its true value.
     pub means: [DVec3; MEANS],
     /// Number of pixels it represents.
     pub weight: f64,
 }
 
-/// Estimates of the picture's errors.
+/// Estimates of the errors of an image.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Errors {
-    /// Mean of the picture over mean of the truth, minus 1.
+    /// Mean of the image over mean of the truth, minus 1.
     pub bias: Estimate,
     /// Root of the mean relative square error.
     pub rms: Estimate,
     /// Relative error not exceeded by 95 % of the pixels.
     pub percentile_95: Estimate,
-    /// True if errors dominate the percentile; if noise does, the interval starts at 0.
+    /// True if errors dominate the percentile. If noise does, the interval begins at 0.
     pub percentile_resolved: bool,
     /// Root of the mean relative variance of the truth's estimates.
     pub noise: f64,
 }
 
 /// Estimates by a resample of the pixels.
-struct Again {
+struct Resampled {
     difference: f64,
     square: f64,
-    /// The percentile's square with noise, and extrapolated to none.
+    /// Square of the percentile with noise.
     noisy: f64,
+    /// Square of the percentile, extrapolated to zero noise.
     clean: f64,
 }
 
-/// Computes the errors of a picture whose mean over pixels and channels is `mean`.
+/// Computes the errors of an image whose mean over pixels and channels is `mean`.
 pub fn errors(pixels: &[Measured], mean: f64, seed: u32) -> Errors {
     let differences: Vec<(f64, f64)> = pixels.iter().map(Measured::difference).collect();
     let difference = mean_of(pixels, &differences);
@@ -77,12 +78,12 @@ pub fn errors(pixels: &[Measured], mean: f64, seed: u32) -> Errors {
     let noise = mean_of(pixels, &variances).sqrt();
 
     let ranked = [0, 1, 2].map(|part| Ranked::new(pixels, floor, part));
-    // The percentile's square with noise, and extrapolated to none.
+    // Squares of the percentile with noise, and extrapolated to zero noise.
     let percentile = |times: Option<&[u16]>| {
         let [all, even, odd] = [0, 1, 2].map(|part| ranked[part].percentile(pixels, times));
         (all, 2.0 * all - 0.5 * (even + odd))
     };
-    let again: Vec<Again> = (0..RESAMPLES)
+    let again: Vec<Resampled> = (0..RESAMPLES)
         .into_par_iter()
         .map_init(Vec::new, |times, r| {
             resample(times, pixels.len(), seed, r);
@@ -90,10 +91,10 @@ pub fn errors(pixels: &[Measured], mean: f64, seed: u32) -> Errors {
             let [difference, square] =
                 [&differences, &squares].map(|values| resampled(pixels, values, times, seed));
             let (noisy, clean) = percentile(Some(times));
-            Again { difference, square, noisy, clean }
+            Resampled { difference, square, noisy, clean }
         })
         .collect();
-    let all = |value: fn(&Again) -> f64| again.iter().map(value).collect::<Vec<f64>>();
+    let all = |value: fn(&Resampled) -> f64| again.iter().map(value).collect::<Vec<f64>>();
     let interval = |values: &[(f64, f64)], again| {
         let value = mean_of(pixels, values);
         let weights: f64 = pixels.iter().map(|p| p.weight).sum();
@@ -113,7 +114,7 @@ pub fn errors(pixels: &[Measured], mean: f64, seed: u32) -> Errors {
     Errors { bias, rms, percentile_95, percentile_resolved, noise }
 }
 
-/// Estimates the mean over the picture from values at the picks.
+/// Estimates the mean over the image from values at the picks.
 fn mean_of(pixels: &[Measured], values: &[(f64, f64)]) -> f64 {
     let (mut sum, mut total) = (0.0, 0.0);
     for (p, (value, _)) in pixels.iter().zip(values) {
@@ -123,7 +124,7 @@ fn mean_of(pixels: &[Measured], values: &[(f64, f64)]) -> f64 {
     if total > 0.0 { sum / total } else { 0.0 }
 }
 
-/// Estimates the same mean for other random picks and noise.
+/// Estimates the mean over the image for other random picks and noise.
 fn resampled(pixels: &[Measured], values: &[(f64, f64)], times: &[u16], seed: u32) -> f64 {
     let (mut sum, mut total) = (0.0, 0.0);
     for (i, (p, (value, deviation))) in pixels.iter().zip(values).enumerate() {
@@ -143,9 +144,9 @@ impl Measured {
         (1.0 - 1.0 / self.weight.max(1.0)).sqrt()
     }
 
-    /// Returns picture minus truth, mean over channels, and the standard error.
+    /// Returns image minus truth, mean over channels, and the standard error.
     fn difference(&self) -> (f64, f64) {
-        let of = |truth: DVec3| (self.held - truth).element_sum() / 3.0;
+        let of = |truth: DVec3| (self.value - truth).element_sum() / 3.0;
         self.jackknife(of)
     }
 
@@ -165,36 +166,35 @@ impl Measured {
         self.means.iter().sum::<DVec3>() / MEANS as f64
     }
 
-    /// Variance of [`Measured::truth`].
+    /// Returns the variance of [`Measured::truth`].
     pub fn variance(&self) -> DVec3 {
         let truth = self.truth();
         let squares: DVec3 = self.means.iter().map(|m| (m - truth) * (m - truth)).sum();
         squares / (MEANS * (MEANS - 1)) as f64
     }
 
-    /// Variance of [`Measured::truth`] over its square, mean over channels.
+    /// Returns the variance of [`Measured::truth`] over its square, mean over channels.
     pub fn relative_variance(&self, floor: f64) -> f64 {
         let truth = self.truth();
         quotient(self.variance(), truth * truth + floor)
     }
 
-    /// Returns the relative square error less the noise's part (may be negative), and its standard error.
+    /// Returns the relative square error without the part of the noise (may be negative), and its standard error.
     fn relative_square(&self, floor: f64) -> (f64, f64) {
         self.jackknife(|truth| {
-            let difference = self.held - truth;
+            let difference = self.value - truth;
             quotient(difference * difference, truth * truth + floor)
         })
     }
 
-    /// Returns the relative square error by all means (part 0) or by every other one (parts 1 and 2), noise
-    /// included.
+    /// Returns the relative square error with noise, by all means (part 0) or by every other one (parts 1 and 2).
     fn noisy_square(&self, floor: f64, part: usize) -> f64 {
         let truth = self.truth();
-        let seen = match part {
+        let estimate = match part {
             0 => truth,
             _ => self.means[part - 1..].iter().step_by(2).sum::<DVec3>() / (MEANS / 2) as f64,
         };
-        let difference = self.held - seen;
+        let difference = self.value - estimate;
         quotient(difference * difference, truth * truth + floor)
     }
 }
@@ -224,7 +224,7 @@ impl Ranked {
     }
 }
 
-/// Mean over the channels of numerator / denominator; 0 / 0 is 0 (black, and correctly so).
+/// Returns the mean over the channels of numerator / denominator; 0 / 0 is 0, for black pixels that are correct.
 fn quotient(numerator: DVec3, denominator: DVec3) -> f64 {
     (0..3).map(|c| ratio(numerator[c], denominator[c])).sum::<f64>() / 3.0
 }
@@ -241,7 +241,7 @@ mod tests {
         (f64::from(hash(a, b)) + 0.5) / 4294967296.0
     }
 
-    /// Pixels of truth 0.2 to 2 with the given errors, measured with relative noise `noise`.
+    /// Creates pixels of truth 0.2 to 2 with the given errors, measured with relative noise `noise`.
     fn pixels(n: u32, noise: f64, error: impl Fn(u32) -> f64) -> Vec<Measured> {
         let pixel = |i: u32| {
             let truth = DVec3::new(1.0, 0.5, 0.8) * (0.2 + 1.8 * uniform(i, 90));
@@ -249,14 +249,14 @@ mod tests {
             let deviate = |k: u32| (0..4).map(|j| uniform(i, 4 * k + j) - 0.5).sum::<f64>() * 3f64.sqrt();
             let scale = noise * (MEANS as f64).sqrt();
             let means = std::array::from_fn(|k| truth * (1.0 + scale * deviate(k as u32)));
-            // Drawn from a picture of very many pixels.
-            Measured { held: truth * (1.0 + error(i)), means, weight: 1e6 }
+            // Picked from an image of very many pixels.
+            Measured { value: truth * (1.0 + error(i)), means, weight: 1e6 }
         };
         (0..n).map(pixel).collect()
     }
 
     fn mean(pixels: &[Measured]) -> f64 {
-        pixels.iter().map(|p| p.held.element_sum() / 3.0).sum::<f64>() / pixels.len() as f64
+        pixels.iter().map(|p| p.value.element_sum() / 3.0).sum::<f64>() / pixels.len() as f64
     }
 
     #[test]
@@ -284,12 +284,12 @@ mod tests {
     fn percentiles_lose_the_noise() {
         let noisy = pixels(4000, 0.01, |_| 0.0);
         let found = errors(&noisy, mean(&noisy), 2);
-        // Unresolved, and no larger than if all the noise were error: 1.96 times its deviation, and a tenth
-        // for the interval.
+        // Unresolved, and no larger than if all noise were error: 1.96 times its deviation, and a tenth for the
+        // interval.
         assert!(!found.percentile_resolved && found.percentile_95.low == 0.0, "{found:?}");
         assert!(found.percentile_95.high < 1.1 * 1.96 * 0.01, "{found:?}");
         assert!(found.rms.low == 0.0 && found.rms.high < 0.003 && found.bias.covers(0.0), "{found:?}");
-        // Errors spread evenly between -10 % and 10 %: 95 % of them are below 9.5 %, a little less by the floor.
+        // Errors are uniform between -10 % and 10 %: 95 % of them are below 9.5 %, and a little less with the floor.
         let spread = |i: u32| 0.2 * uniform(i, 77) - 0.1;
         let noisy = pixels(4000, 0.02, spread);
         let found = errors(&noisy, mean(&noisy), 3).percentile_95;
@@ -325,18 +325,18 @@ mod tests {
             let found = errors(&pixels, mean(&pixels), 4);
             [found.bias, found.rms].map(|e| e.high - e.low)
         };
-        let [certain, noisy, drawn] = [with(1.0, 0.0), with(1.0, 0.02), with(1e6, 0.02)];
+        let [certain, noisy, picked] = [with(1.0, 0.0), with(1.0, 0.02), with(1e6, 0.02)];
         for k in 0..2 {
             assert!(
-                certain[k] < 1e-12 && noisy[k] > 1e-4 && drawn[k] > 1.5 * noisy[k],
-                "{noisy:?} {drawn:?}"
+                certain[k] < 1e-12 && noisy[k] > 1e-4 && picked[k] > 1.5 * noisy[k],
+                "{noisy:?} {picked:?}"
             );
         }
     }
 
     #[test]
-    fn black_pictures_of_black_scenes_are_right() {
-        let black = Measured { held: DVec3::ZERO, means: [DVec3::ZERO; MEANS], weight: 1.0 };
+    fn black_images_of_black_scenes_are_right() {
+        let black = Measured { value: DVec3::ZERO, means: [DVec3::ZERO; MEANS], weight: 1.0 };
         let found = errors(&[black; 5], 0.0, 0);
         assert_eq!((found.bias.value, found.rms.value, found.percentile_95.value), (0.0, 0.0, 0.0));
         assert_eq!(errors(&[], 0.0, 0).rms.value, 0.0);

@@ -1,11 +1,12 @@
 //! Choice of the pixels to verify.
 //!
-//! Every pixel may be picked. Half of its probability is the same for all; the other half is proportional to
-//! its contrast with its neighbours: errors of caches and of aliasing gather in creases and at edges, and the
-//! square of noise in few bright pixels, so that a plain random sample would see too few of the pixels that
-//! dominate the root mean square. Weights undo the preference (Horvitz-Thompson). Picks are systematic:
-//! pixels are ordered block by block along the Morton curve, in random order within blocks, and picked at
-//! equal steps of the cumulative probability.
+//! Every pixel may be picked. One half of its probability is uniform. The other half is proportional to its contrast
+//! with its neighbours, since errors of caches and of aliasing are largest in creases and at edges, and squares of
+//! noise in single bright pixels. Uniform sampling would miss the pixels that dominate the root mean square. Weights
+//! undo the preference (Horvitz-Thompson).
+//!
+//! Picks are systematic. Pixels are ordered block by block along the Morton curve, in random order within blocks, and
+//! picked at equal steps of the cumulative probability.
 
 use base::film::Image;
 use base::sampling::hash;
@@ -15,14 +16,14 @@ use base::sampling::hash;
 pub struct Pick {
     /// Index into the image's pixels, row by row.
     pub index: usize,
-    /// Number of pixels it represents.
+    /// Number of pixels that it represents.
     pub weight: f64,
 }
 
 /// Share of the probability that is proportional to contrast.
 const BY_CONTRAST: f64 = 0.5;
 
-/// Difference of radiances, over the mean, that does not count as contrast.
+/// Difference of radiances, over the mean radiance, that does not count as contrast.
 const CONTRAST_FLOOR: f64 = 0.1;
 
 /// Side of a block, within which the order is random, in pixels.
@@ -53,7 +54,7 @@ pub fn choose(image: &Image, count: usize, seed: u32) -> Vec<Pick> {
     picks
 }
 
-/// Probability of each pixel to be picked; they sum to `count`.
+/// Returns the probability of each pixel to be picked. The probabilities sum to `count`.
 fn inclusion(image: &Image, count: usize) -> Vec<f64> {
     let contrast = contrasts(image);
     let total: f64 = contrast.iter().sum();
@@ -75,8 +76,8 @@ fn inclusion(image: &Image, count: usize) -> Vec<f64> {
     }
 }
 
-/// Contrast of each pixel: its relative difference from the median around it, and at most 1 more for the
-/// largest difference from a neighbour.
+/// Returns the contrast of each pixel: its relative difference from the median around it, plus the largest relative
+/// difference from a neighbour, at most 1.
 fn contrasts(image: &Image) -> Vec<f64> {
     let value = |i: usize| f64::from(image.pixels[i].element_sum());
     let mean = (0..image.pixels.len()).map(value).sum::<f64>() / image.pixels.len().max(1) as f64;
@@ -125,7 +126,7 @@ mod tests {
     use super::*;
     use base::math::Rgb;
 
-    /// A smooth ramp with a bright stripe.
+    /// Creates a smooth ramp with a bright stripe.
     fn image() -> Image {
         let mut image = Image::new(60, 40);
         for (i, pixel) in image.pixels.iter_mut().enumerate() {

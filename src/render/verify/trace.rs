@@ -1,9 +1,9 @@
 //! Path-traced values of the pixels picked.
 
-use super::Settings;
 use super::measure::{MEANS, Measured};
 use super::picks::Pick;
-use crate::method::path::{RayCounts, Wanted, pixel_means};
+use super::settings::VerifySettings;
+use crate::method::path::{PixelPaths, PixelSampling, RayCounts, pixel_means};
 use base::film::metrics::REL_MSE_FLOOR;
 use base::film::{Image, sharpen};
 use base::parallel::ShortRuns;
@@ -15,23 +15,23 @@ use transport::paths::Estimand;
 use world::World;
 use world::view::View;
 
-/// Number of paths for each of a pixel's means in the pilot.
+/// Number of paths for each mean of a pixel in the pilot.
 const PILOT: u32 = 4;
 
-/// Standard error to reach, relative to the pixel's radiance.
+/// Standard error to reach, over the radiance of the pixel.
 const TARGET: f64 = 0.01;
 
-/// Number of pixels of one task.
+/// Number of pixels of a task.
 const TASK: usize = 16;
 
-/// Seed that separates these paths from those of the picture, which may have the same seed.
+/// Seed that separates these paths from those of the image, which may have the same seed.
 const SEED: u32 = 0x7e57_ab1e;
 
 /// Traced pixels and their cost.
-pub struct Traced {
+pub struct TracedPixels {
     /// Pixels in the order of the picks.
     pub pixels: Vec<Measured>,
-    /// Number of pixels given fewer paths than they needed.
+    /// Number of pixels with fewer paths than they need.
     pub at_cap: usize,
     /// Number of paths.
     pub paths: u64,
@@ -45,14 +45,14 @@ pub fn trace(
     view: &View,
     image: &Image,
     picks: &[Pick],
-    settings: &Settings,
+    settings: &VerifySettings,
     control: &Control,
-) -> Option<Traced> {
+) -> Option<TracedPixels> {
     let spp = match settings.estimand {
         Estimand::Pixels => 1,
         Estimand::EyeSamples { spp, .. } => spp.max(1),
     };
-    let most = (settings.most_samples / MEANS as u32).max(PILOT).next_multiple_of(spp);
+    let most = (settings.max_samples / MEANS as u32).max(PILOT).next_multiple_of(spp);
     let least = PILOT.next_multiple_of(spp);
     let sum: DVec3 = image.pixels.iter().map(|p| p.as_dvec3()).sum();
     let mean = sum.element_sum() / (3 * image.pixels.len().max(1)) as f64;
@@ -60,7 +60,7 @@ pub fn trace(
     let floor = REL_MSE_FLOOR * mean * mean;
     let tracing = Tracing { world, view, image, settings, control };
     let task = |picks: &[Pick]| {
-        let mut traced = Traced { pixels: Vec::new(), at_cap: 0, paths: 0, nonfinite: 0 };
+        let mut traced = TracedPixels { pixels: Vec::new(), at_cap: 0, paths: 0, nonfinite: 0 };
         let mut samples = vec![least; picks.len()];
         let pilot = tracing.measure(picks, &samples, 0, &mut traced)?;
         for (samples, pixel) in samples.iter_mut().zip(&pilot) {
@@ -71,8 +71,8 @@ pub fn trace(
         traced.pixels = tracing.measure(picks, &samples, 1, &mut traced)?;
         Some(traced)
     };
-    let parts: Vec<Option<Traced>> = picks.par_chunks(TASK).one_by_one().map(task).collect();
-    let mut all = Traced { pixels: Vec::with_capacity(picks.len()), at_cap: 0, paths: 0, nonfinite: 0 };
+    let parts: Vec<Option<TracedPixels>> = picks.par_chunks(TASK).one_by_one().map(task).collect();
+    let mut all = TracedPixels { pixels: Vec::with_capacity(picks.len()), at_cap: 0, paths: 0, nonfinite: 0 };
     for part in parts {
         let part = part?;
         all.pixels.extend(part.pixels);
@@ -88,12 +88,12 @@ struct Tracing<'a> {
     world: &'a World,
     view: &'a View,
     image: &'a Image,
-    settings: &'a Settings,
+    settings: &'a VerifySettings,
     control: &'a Control,
 }
 
 impl Tracing<'_> {
-    /// The pixels that a picked one is made of, with their weights: itself, and those around it if the picture is
+    /// Returns the pixels that a picked pixel is a sum of, with their weights: more than itself if the image is
     /// sharpened.
     fn parts(&self, pick: &Pick) -> Vec<([u32; 2], f32)> {
         let View { camera, window } = self.view;
@@ -115,35 +115,37 @@ impl Tracing<'_> {
             .collect()
     }
 
-    /// Traces all means of some pixels, each of so many samples. Another `round` gives independent ones.
+    /// Traces all means of some pixels, each of so many samples. Another `round` gives independent means.
     fn measure(
         &self,
         picks: &[Pick],
         samples: &[u32],
         round: u32,
-        traced: &mut Traced,
+        traced: &mut TracedPixels,
     ) -> Option<Vec<Measured>> {
         let Tracing { world, view, settings, .. } = *self;
         let max_depth = world.scene.path_limit(settings.max_depth);
-        let held = |pick: &Pick| Measured {
-            held: self.image.pixels[pick.index].as_dvec3(),
+        let measured = |pick: &Pick| Measured {
+            value: self.image.pixels[pick.index].as_dvec3(),
             means: [DVec3::ZERO; MEANS],
             weight: pick.weight,
         };
-        let mut pixels: Vec<Measured> = picks.iter().map(held).collect();
+        let mut pixels: Vec<Measured> = picks.iter().map(measured).collect();
         let parts = picks.iter().zip(samples).enumerate().flat_map(|(i, (pick, &samples))| {
-            self.parts(pick).into_iter().map(move |(pixel, weight)| (i, weight, Wanted { pixel, samples }))
+            self.parts(pick)
+                .into_iter()
+                .map(move |(pixel, weight)| (i, weight, PixelPaths { pixel, samples }))
         });
-        let parts: Vec<(usize, f32, Wanted)> = parts.collect();
-        let wanted: Vec<Wanted> = parts.iter().map(|(.., wanted)| *wanted).collect();
+        let parts: Vec<(usize, f32, PixelPaths)> = parts.collect();
+        let wanted: Vec<PixelPaths> = parts.iter().map(|(.., wanted)| *wanted).collect();
         let mut counts = RayCounts::default();
         for k in 0..MEANS {
             if self.control.is_cancelled() {
                 return None;
             }
             let seed = hash(hash(settings.seed, SEED), round * MEANS as u32 + k as u32);
-            let (means, nonfinite) =
-                pixel_means(world, view, settings.estimand, &wanted, (seed, max_depth), &mut counts);
+            let sampling = PixelSampling { estimand: settings.estimand, seed, max_depth };
+            let (means, nonfinite) = pixel_means(world, view, sampling, &wanted, &mut counts);
             for (&(pixel, weight, _), mean) in parts.iter().zip(means) {
                 pixels[pixel].means[k] += f64::from(weight) * mean;
             }

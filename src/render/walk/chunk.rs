@@ -1,50 +1,52 @@
-//! Chunks of a walk: frames that share records. Each begins without any, so that its frames are the same in whichever
-//! run and on whichever machine it is rendered.
+//! Chunks of a walk: frames that share records. A chunk begins without records, so that its frames do not depend on the
+//! run or the machine that renders them.
 
 use std::num::NonZeroUsize;
 use std::ops::Range;
 
 /// Frames of a walk that share records.
 #[derive(Debug, PartialEq, Eq)]
-pub struct Chunk {
+pub struct FrameChunk {
     /// Numbers of the frames wanted, ascending.
     pub frames: Vec<usize>,
     /// True if no later run can want further frames of the chunk after these.
     pub ends: bool,
 }
 
-/// Frames by the chunks that they belong to: frames 1 to N of the path are one, and so on; all of it without a size.
-pub fn chunks(frames: &[usize], size: Option<NonZeroUsize>, path_length: usize) -> Vec<Chunk> {
+/// Groups frames by chunk: frames 1 to N of the path are the first chunk, and so on. Without a size there is one chunk.
+pub fn chunks(frames: &[usize], size: Option<NonZeroUsize>, path_length: usize) -> Vec<FrameChunk> {
     let size = size.map_or(path_length.max(1), NonZeroUsize::get);
     let number = |frame: &usize| frame.saturating_sub(1) / size;
     let split = frames.chunk_by(|a, b| number(a) == number(b));
     split
         .map(|frames| {
             let last = frames.last().copied().unwrap_or_default();
-            Chunk { frames: frames.to_vec(), ends: last % size == 0 || last == path_length }
+            FrameChunk { frames: frames.to_vec(), ends: last % size == 0 || last == path_length }
         })
         .collect()
 }
 
-/// Frames of a chunk that are rendered one after the other.
+/// Consecutive frames of a chunk to be rendered.
 #[derive(Debug, PartialEq, Eq)]
 pub struct Run {
-    /// Frames by index in the chunk.
+    /// Indices of the frames in the chunk.
     pub frames: Range<usize>,
-    /// True if the run goes on with saved records, false if it begins without any.
+    /// True if the run begins with saved records, false if it begins without records.
     pub from_saved: bool,
 }
 
-/// Runs that render the frames of a chunk that are not `done`, so that each gets the records that it has in a run from
-/// the first frame to the last. `saved` is the frame after which records were saved, if they were.
+/// Returns the runs that render all frames of a chunk that are not `done`.
+///
+/// Each frame gets the records of a run from the first frame to the last. `saved` is the index of the frame after which
+/// records were saved, if they were.
 pub fn runs(done: &[bool], saved: Option<usize>) -> Vec<Run> {
-    let behind = saved.map_or(0, |saved| saved + 1);
+    let resumed = saved.map_or(0, |saved| saved + 1);
     let up_to_last_lacking = |range: Range<usize>| {
         let end = range.clone().rev().find(|i| !done[*i]).map_or(range.start, |last| last + 1);
         range.start..end
     };
-    let anew = if saved.is_some() { 0..behind } else { 0..done.len() };
-    let further = if saved.is_some() { behind..done.len() } else { 0..0 };
+    let anew = if saved.is_some() { 0..resumed } else { 0..done.len() };
+    let further = if saved.is_some() { resumed..done.len() } else { 0..0 };
     [(anew, false), (further, true)]
         .into_iter()
         .map(|(range, from_saved)| Run { frames: up_to_last_lacking(range), from_saved })
@@ -78,10 +80,10 @@ mod tests {
             runs.into_iter().map(|run| (run.frames, run.from_saved)).collect::<Vec<_>>()
         };
         assert_eq!(of("....", None), [(0..4, false)]);
-        // Without saved records, frames that are there are rendered again for theirs.
+        // Without saved records, existing frames are rendered again for their records.
         assert_eq!(of("xx..", None), [(0..4, false)]);
         assert_eq!(of("xx..", Some(1)), [(2..4, true)]);
-        // A kill between a frame's file and its records.
+        // The process ended between writing a frame and saving its records.
         assert_eq!(of("xx..", Some(0)), [(1..4, true)]);
         assert_eq!(of(".xx.", Some(2)), [(0..1, false), (3..4, true)]);
         assert_eq!(of("x.xx", Some(3)), [(0..2, false)]);

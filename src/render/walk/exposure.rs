@@ -1,5 +1,7 @@
-//! One exposure for all frames of a path, so that brightness does not jump: the automatic exposure of small pictures at
-//! frames spread over the whole path, put together. Any part of the path has the same.
+//! One exposure for all frames of a path, so that brightness does not jump.
+//!
+//! The result is the automatic exposure of small images at frames spread over the whole path, taken together. So it
+//! does not depend on the frames that are rendered.
 
 use crate::method::{path, render};
 use crate::session::Session;
@@ -8,14 +10,14 @@ use base::progress::Control;
 use scene::Cameras;
 use world::view::View;
 
-/// Number of frames looked at.
+/// Number of small images.
 const FRAMES: usize = 8;
-/// Longer side of the pictures of those, in pixels.
+/// Longer side of the small images, in pixels.
 const SIDE: u32 = 32;
-/// Samples a pixel of these.
+/// Samples per pixel of the small images.
 const SPP: u32 = 16;
 
-/// Stops by which the radiance of all frames of the session's path is to be scaled for display.
+/// Returns the stops by which the radiance of all frames of the session's path is scaled for display.
 pub fn over_path(session: &Session, resolution: [u32; 2], control: &Control) -> f32 {
     let Cameras { path: cameras, .. } = &session.cameras;
     let longer = resolution[0].max(resolution[1]).max(1);

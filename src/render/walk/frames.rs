@@ -3,17 +3,17 @@
 use scene::MAX_FRAMES;
 use std::str::FromStr;
 
-/// Frames in ascending order, each once, at least one.
+/// Frames in ascending order, without duplicates, at least one.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct FrameList(Vec<usize>);
 
 impl FrameList {
-    /// Frames by number.
+    /// Iterates over the numbers of the frames.
     pub fn iter(&self) -> impl ExactSizeIterator<Item = usize> {
         self.0.iter().copied()
     }
 
-    /// The last frame.
+    /// Returns the last frame.
     pub fn last(&self) -> usize {
         self.0.last().copied().unwrap_or_default()
     }
@@ -26,18 +26,18 @@ impl FromStr for FrameList {
         let mut frames = Vec::new();
         for part in text.split(',') {
             let (first, last, step) = range(part.trim()).ok_or_else(|| {
-                format!("`{part}` is no frame and no range; write 7, 1-10, 1-100x5 or a list of those like 1,5,9-12")
+                format!("`{part}` is not a frame or a range; write 7, 1-10, 1-100x5 or a list like 1,5,9-12")
             })?;
             if first == 0 {
                 return Err("frames count from 1".to_owned());
             }
             if last < first || step == 0 {
                 return Err(format!(
-                    "`{part}` holds no frame; write the first one first, and a step of 1 or more"
+                    "`{part}` contains no frame; write the lower frame first, and a step of at least 1"
                 ));
             }
             if last > MAX_FRAMES {
-                return Err(format!("frame {last} is beyond {MAX_FRAMES}, the longest path"));
+                return Err(format!("frame {last} is beyond {MAX_FRAMES}, the maximum length of a path"));
             }
             frames.extend((first..=last).step_by(step));
         }
@@ -47,7 +47,7 @@ impl FromStr for FrameList {
     }
 }
 
-/// First and last frame and step of `A`, `A-B` or `A-BxS`.
+/// Parses first frame, last frame and step of `A`, `A-B` or `A-BxS`.
 fn range(text: &str) -> Option<(usize, usize, usize)> {
     let number = |text: &str| text.trim().parse::<usize>().ok();
     let Some((first, rest)) = text.split_once('-') else {

@@ -1,22 +1,22 @@
-//! Walk-throughs: frames along a camera path, lit by records that live from frame to frame.
+//! Walk-throughs: frames along a camera path, lit by records that persist from frame to frame.
 //!
 //! Paper: Herzog et al. 2009, section 6.4.
 //!
-//! A [`Walk`] renders one frame after the other. Scene, virtual lights and light trees are the session's; the records
-//! of indirect light stay in the walk (see [`RetainedRecords`]), so that a frame computes only those that its
-//! predecessors lack. Of drawn direct light, that of even surfaces is carried from picture to picture and refreshed by
-//! few samples (see [`transport::reprojection`]). Elsewhere the random numbers of a pixel are the same in every frame,
-//! so that noise which the denoiser leaves stays where it is: on static surfaces of the apartment, reprojected from
-//! frame to frame, new numbers in each change the denoised picture 1.8 times as much. A frame has the same bits for
-//! any number of threads; it depends on the frames that the walk rendered before it.
+//! A [`Walk`] renders one frame after the other. The session holds the scene, virtual lights and light trees. The walk
+//! holds the records of indirect light (see [`RetainedRecords`]), so that a frame computes only records that former
+//! frames lack. Sampled direct light of smooth surfaces is reprojected from frame to frame and refreshed by few samples
+//! (see [`transport::reprojection`]). Elsewhere the random numbers of a pixel are the same in every frame, so that
+//! noise which the denoiser leaves does not flicker.
 //!
-//! Walks are cut into chunks, which begin without records, and a chunk's records are saved beside its frames, so that a
-//! walk that was stopped goes on with the same. `docs/walk.md` has figures of time, error, flicker and memory.
+//! A frame has the same bits for any number of threads. It depends on the frames that the walk rendered before.
 //!
-//! Footprints are adapted at differences that are seen beside the contrasts of the frame before (see
-//! [`transport::perception`]), which in the apartment spares a tenth of the new records, in the paper a fifth.
+//! Walks are cut into chunks, which begin without records. The records of a chunk are saved beside its frames, so that
+//! an interrupted walk resumes with the same records. `docs/walk.md` has figures of time, error, flicker and memory.
 //!
-//! [`frames`] lists frames, [`names`] names their files, [`exposure`] finds one exposure for all of a path.
+//! Footprints shrink at differences that are visible against the contrasts of the previous frame (see
+//! [`transport::perception`]).
+//!
+//! [`frames`] lists frames, [`names`] names their files, [`exposure`] computes one exposure for a whole path.
 
 pub mod chunk;
 pub mod exposure;
@@ -25,7 +25,7 @@ pub mod names;
 pub mod saved;
 
 use crate::method::RetainedRecords;
-use crate::session::{Former, Frame, FrameError, Goal, Kept, Session};
+use crate::session::{Former, FrameError, Goal, RenderedFrame, Session, VisibleDifferences, WalkState};
 use base::progress::Control;
 use transport::perception::Thresholds;
 use transport::reprojection::PreviousImage;
@@ -46,17 +46,17 @@ pub struct Walk<'a> {
     thresholds: Thresholds,
 }
 
-/// Bytes of the length of a saved picture, before it and the records.
+/// Bytes of the number that states the length of a saved image.
 const LENGTH: usize = size_of::<u64>();
 
 impl<'a> Walk<'a> {
-    /// A walk that begins without records. Its frames are rendered for `goal`; where that plans settings, alone.
+    /// Begins a walk without records. If `goal` plans settings, each frame is rendered alone.
     pub fn new(session: &'a Session, goal: Goal, limits: RetentionLimits) -> Walk<'a> {
         let (records, last) = (RetainedRecords::new(limits), PreviousImage::default());
         Walk { session, goal, limits, records, last, thresholds: Thresholds::default() }
     }
 
-    /// A walk that goes on from bytes that [`Walk::save`] returned; `None` if it did not.
+    /// Resumes a walk from the bytes that [`Walk::save`] returned; `None` if the bytes are damaged.
     pub fn restored(
         session: &'a Session,
         goal: Goal,
@@ -73,19 +73,24 @@ impl<'a> Walk<'a> {
         is_sound.then_some(Walk { session, goal, limits, records, last, thresholds })
     }
 
-    /// The records and the last picture as they are between frames: a walk that goes on from them renders the same
-    /// frames, bit for bit.
+    /// Saves the records and the last image between frames.
+    ///
+    /// A walk that is resumed from the bytes renders frames of the same bits.
     pub fn save(&self) -> Vec<u8> {
-        // Plain numbers, which cannot fail to be written; without bytes there would be none to restore.
+        // Plain numbers can always be written; a walk cannot be restored from no bytes.
         let last = postcard::to_stdvec(&(&self.last, &self.thresholds)).unwrap_or_default();
         [&(last.len() as u64).to_le_bytes()[..], &last, &self.records.save()].concat()
     }
 
-    /// Renders the next frame, seen by `view`. One that was cancelled halfway is partial, not an error.
-    pub fn frame(&mut self, view: &View, control: &Control) -> Result<Frame, FrameError> {
+    /// Renders the next frame, seen by `view`. A frame that was cancelled halfway is partial, not an error.
+    ///
+    /// # Errors
+    /// As [`Session::frame`].
+    pub fn frame(&mut self, view: &View, control: &Control) -> Result<RenderedFrame, FrameError> {
         let last = self.limits.reprojects.then_some(&mut self.last);
-        let thresholds = self.limits.q_scale.map(|q_scale| (&mut self.thresholds, q_scale));
-        let kept = Kept { records: &mut self.records, last, thresholds };
-        self.session.frame_by(view, &self.goal, Former::Frames(kept), control)
+        let thresholds = &mut self.thresholds;
+        let thresholds = self.limits.q_scale.map(|q_scale| VisibleDifferences { thresholds, q_scale });
+        let state = WalkState { records: &mut self.records, last, thresholds };
+        self.session.frame_from(view, &self.goal, Former::Frames(state), control)
     }
 }

@@ -1,10 +1,9 @@
-//! Names of the files of a walk's frames: `f.####.exr` or `f.%04d.exr`, where the number stands with at least so many
-//! digits, padded by zeros.
+//! File names of a walk's frames: `f.####.exr` or `f.%04d.exr`. Numbers are padded with zeros to that many digits.
 
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
-/// Maximum number of digits asked for.
+/// Maximum number of digits of a name.
 const MAX_DIGITS: usize = 16;
 
 /// A name with a place for the frame's number.
@@ -17,7 +16,7 @@ pub struct FileNames {
 }
 
 impl FileNames {
-    /// File of a frame.
+    /// Returns the file of a frame.
     pub fn of(&self, frame: usize) -> PathBuf {
         let FileNames { folder, before, digits, after } = self;
         folder.join(format!("{before}{frame:0digits$}{after}"))
@@ -51,7 +50,7 @@ impl FromStr for FileNames {
     }
 }
 
-/// Start, end and number of digits of every place for a number: a run of `#`, or `%d`, `%4d`, `%04d`.
+/// Finds start, end and number of digits of every place for a number: a run of `#`, or `%d`, `%4d`, `%04d`.
 fn places(name: &str) -> impl Iterator<Item = (usize, usize, usize)> {
     let mut at = 0;
     std::iter::from_fn(move || {
@@ -68,7 +67,7 @@ fn places(name: &str) -> impl Iterator<Item = (usize, usize, usize)> {
                     at += 1 + width;
                     if rest.get(1 + width) == Some(&b'd') {
                         at += 1;
-                        // Digits too many for a number are too many for a name.
+                        // A width that is too large for a number is too large for a name.
                         let digits =
                             name[start + 1..at - 1].parse().unwrap_or(if width > 0 { usize::MAX } else { 1 });
                         return Some((start, at, digits));
@@ -97,7 +96,7 @@ mod tests {
         assert_eq!(name("f%3d.exr", 7), "f007.exr");
         assert_eq!(name("#.exr", 12), "12.exr");
         assert_eq!(name("ü%ü#.exr", 1), "ü%ü1.exr");
-        // The folder's name is left alone.
+        // The name of the folder does not change.
         assert_eq!(name("take##/f#.exr", 3), "take##/f3.exr");
     }
 

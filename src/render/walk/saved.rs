@@ -1,9 +1,9 @@
-//! Records in a file beside the frames, so that a walk that was stopped goes on with the same.
+//! Records in a file beside the frames, so that an interrupted walk resumes with the same records.
 //!
-//! Long walks keep hundreds of megabytes, so that records are not saved after every frame, but so often that it takes a
-//! small part of the time; frames after the last save are rendered again for theirs.
+//! Long walks have hundreds of megabytes of records. They are saved so often that saving takes a small part of the
+//! time. Frames after the last save are rendered again for their records.
 //!
-//! Layout: the key of the frame after which they were saved, a hash of the rest, both sixteen digits, and the records.
+//! Layout: the key of the last frame before the save, a hash of the records (both sixteen digits), and the records.
 
 use base::film::{ImageError, atomic};
 use readers::fnv1a;
@@ -12,10 +12,10 @@ use std::io::Write;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-/// Digits of a key and of a hash.
+/// Number of digits of a key, and of a hash.
 const DIGITS: usize = 16;
 
-/// Time between saves, in times that a save takes.
+/// Minimum time between saves, over the time of a save.
 const BETWEEN: u32 = 20;
 
 /// The pace at which records are saved.
@@ -31,13 +31,16 @@ impl Pace {
         self.last.is_none_or(|(end, took)| now.duration_since(end) >= took * BETWEEN)
     }
 
-    /// Notes a save.
+    /// Records the times of a save.
     pub fn saved(&mut self, begun: Instant, end: Instant) {
         self.last = Some((end, end.duration_since(begun)));
     }
 }
 
-/// Writes records, saved after the frame of `key`, whole or not at all.
+/// Writes records that were saved after the frame of `key`, completely or not at all.
+///
+/// # Errors
+/// If the file cannot be written.
 pub fn write(path: &Path, key: &str, records: &[u8]) -> Result<(), ImageError> {
     let written = atomic::write_atomically(path, |file| {
         write!(file, "{key}{:0DIGITS$x}", fnv1a(records))?;
@@ -46,7 +49,7 @@ pub fn write(path: &Path, key: &str, records: &[u8]) -> Result<(), ImageError> {
     written.map_err(|error| ImageError::Write { path: path.to_owned(), error })
 }
 
-/// Reads records and the key that they were saved with; `None` where there are none, or the file is damaged.
+/// Reads records and their key; `None` if there is no file, or if it is damaged.
 pub fn read(path: &Path) -> Option<(String, Vec<u8>)> {
     let mut file = fs::read(path).ok()?;
     let records = (file.len() >= 2 * DIGITS).then(|| file.split_off(2 * DIGITS))?;

@@ -173,7 +173,8 @@ mod tests {
         let world = ceiling();
         let trees = LightTrees::build(&[], Vec::new(), world.diagonal, Family::default(), &Control::new());
         let intensities = intensities.cloned();
-        let lights = Lights { trees, near_sq: vec![near_sq], intensities, diagonal: world.diagonal, seed };
+        let diagonal = world.diagonal;
+        let lights = Lights { trees, near_sq: vec![near_sq], intensities, diagonal, seed, vpls: 0, rays: 0 };
         let c = Compensation::new(&world, &lights);
         let point = SurfacePoint { position: Vec3::ZERO, normal: Vec3::Z, geometric_normal: Vec3::Z };
         let mut sums = [0.0; 2];

@@ -11,7 +11,7 @@ use super::basis::{CHANNELS, MAX_BANDS, MAX_FUNCTIONS, index};
 use super::kernel::{Profile, even_index};
 use super::lobe_table::LobeTable;
 use super::projection::{KernelProjection, Quadrature, ZonalProjection};
-use base::setting::{DOWN, settings};
+use base::setting::{DOWN, PAPER, settings};
 use rayon::prelude::*;
 use scene::MaterialId;
 use world::material::{Bsdf, DullLobe, Materials};
@@ -22,15 +22,15 @@ const INCLINATIONS: [f64; 6] = [0.0, 15.0, 30.0, 45.0, 60.0, 75.0];
 settings! {
     /// Accuracy of series. Errors are in the L2 norm over the incoming directions, relative to the whole kernel (base
     /// and lobes), averaged over outgoing inclinations up to 75°.
-    pub struct SeriesSettings in "Records" {
+    pub struct SeriesSettings {
         /// Minimum roughness α of lobes that records light; 2 for none. Cuts light sharper lobes.
         min_alpha: f32 = 0.25 => [
-            .named("series_alpha").positive().values(&["0.15", "0.2", "0.25", "0.35", "0.5", "2"])
+            .heading(PAPER).named("series_alpha").positive().values(&["0.15", "0.2", "0.25", "0.35", "0.5", "2"])
         ];
         /// Error of a lobe's series below which it gets no further bands, relative to the whole reflection.
-        error: f64 = 0.05 => [.named("series_band_error").positive().scaled(&DOWN)];
+        error: f64 = 0.05 => [.heading(PAPER).named("series_band_error").positive().scaled(&DOWN)];
         /// Maximum error of a lobe's series for which records light it, relative to the whole reflection.
-        max_error: f64 = 0.12 => [.named("series_error").at_least(0.0).scaled(&DOWN)];
+        max_error: f64 = 0.12 => [.heading(PAPER).named("series_error").at_least(0.0).scaled(&DOWN)];
         /// Maximum error of the interpolation between outgoing directions.
         interpolation_error: f64 = 0.002;
     }

@@ -32,6 +32,10 @@ pub struct Lights {
     pub diagonal: f32,
     /// Seed of the VPLs.
     pub seed: u32,
+    /// Number of VPLs.
+    pub vpls: u64,
+    /// Closest-hit rays of the photon paths.
+    pub rays: u64,
 }
 
 impl Lights {
@@ -41,9 +45,10 @@ impl Lights {
         control.begin(Stage::LightPass, u64::from(wanted.pass.indirect));
         let pass = || light_pass(world, &wanted.pass, &wanted.seen, wanted.max_depth, control);
         let made = stats.time(Stage::LightPass, pass);
-        stats.count("VPLs/total", made.len() as u64);
+        let (vpls, rays) = (made.len() as u64, made.photons.rays);
+        stats.count("VPLs/total", vpls);
         stats.count("VPLs/photon paths", made.photons.paths);
-        stats.count("Rays/closest hit", made.photons.rays);
+        stats.count("Rays/closest hit", rays);
 
         control.begin(Stage::Tree, 0);
         let diagonal = world.diagonal;
@@ -56,6 +61,6 @@ impl Lights {
         let min_dist_sq = min_dist_sq(diagonal);
         let near_sq = |&size: &u32| if size > 0 { near_sq_of_size(size, min_dist_sq) } else { 0.0 };
         let near_sq = made.sizes.iter().map(near_sq).collect();
-        Lights { trees, near_sq, intensities, diagonal, seed: wanted.pass.seed }
+        Lights { trees, near_sq, intensities, diagonal, seed: wanted.pass.seed, vpls, rays }
     }
 }

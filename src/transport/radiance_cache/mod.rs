@@ -56,6 +56,5 @@ pub mod store;
 pub mod targets;
 #[cfg(test)]
 mod tests;
-pub mod work;
 
 pub use settings::{CLAMP, CacheSettings, DirectBy, Footprints, FoundBy, MAX_CUT};

@@ -5,7 +5,7 @@ use crate::hsh::SeriesSettings;
 use crate::lightcut::CutSettings;
 use crate::lights::DirectIndirect;
 use crate::paths::Estimand;
-use base::setting::{DOWN, JudgedBy, PATCHES, SHARE, UP, choices, settings};
+use base::setting::{DOWN, JudgedBy, PAPER, PATCHES, SHARE, UP, choices, settings};
 use world::shadow::ShadowSettings;
 
 choices! {
@@ -67,9 +67,11 @@ settings! {
             at epsilon .named("record_epsilon").fraction().scaled(&DOWN)
         ];
         /// Shape of footprints.
-        footprints: Footprints = Footprints::Occlusion => [.values(&["isotropic", "anisotropic", "occlusion"])];
+        footprints: Footprints = Footprints::Occlusion => [
+            .heading(PAPER).values(&["isotropic", "anisotropic", "occlusion"])
+        ];
         /// Number of probe rays per record that find the edges of occluders, in whole rings of sixteen.
-        probe_rays: u32 = 128 => [.range(1.0, 4096.0).scaled(&UP)];
+        probe_rays: u32 = 128 => [.heading(PAPER).range(1.0, 4096.0).scaled(&UP)];
         /// Radius of footprints relative to the distance of the geometry that sends or blocks light (the paper's a),
         /// for direct and indirect light.
         accuracy: [f32; 2] = [0.3, 0.2] => [
@@ -83,16 +85,16 @@ settings! {
         /// Choice of the glossy surfaces lit by records, and accuracy of their series.
         series: SeriesSettings = SeriesSettings::default() => [group];
         /// Extrapolation of records with their gradients, for comparison. Gradients always shape the footprints.
-        gradients: bool = true => [];
+        gradients: bool = true => [.heading(PAPER)];
         /// Relative change of luminance across an anisotropic footprint that halves it along the gradient (the paper's
         /// μ).
-        mu: f32 = 0.5 => [.positive().scaled(&DOWN).with(&[("footprints", "anisotropic")])];
+        mu: f32 = 0.5 => [.heading(PAPER).positive().scaled(&DOWN).with(&[("footprints", "anisotropic")])];
         /// Maximum angle between the normals of a record and a lit point, as √(1 - cos).
-        normal_tolerance: f32 = 0.4 => [.positive().scaled(&[2.0, 1.0, 0.5])];
+        normal_tolerance: f32 = 0.4 => [.heading(PAPER).positive().scaled(&[2.0, 1.0, 0.5])];
         /// Maximum number of passes that shrink footprints at visible seams.
-        passes: u32 = 1 => [.values(&["0", "1", "2", "5"])];
+        passes: u32 = 1 => [.heading(PAPER).values(&["0", "1", "2", "5"])];
         /// Minimum relative difference of luminance that counts as visible.
-        threshold: f32 = 0.02 => [.fraction().scaled(&DOWN)];
+        threshold: f32 = 0.02 => [.heading(PAPER).fraction().scaled(&DOWN)];
         /// Minimum number of eye samples in a kd-tree cell that gets a record. Smaller cells are lit by cuts, or by
         /// final gathering.
         least_cell: u32 = 256 => [.at_least(1.0).scaled(&UP)];

@@ -16,9 +16,9 @@ fn a_square_far_away_changes_no_image() {
     let alone = toml(&room_file(1.0));
     let with = [1e4, 1e6, 1e9, 1e12].map(|distance| (distance, toml(&(room_file(1.0) + &stray(distance)))));
     for (name, method) in small_methods() {
-        let expected = mean_luminance(&image(&alone, &*method));
+        let expected = mean_luminance(&image(&alone, method.renderer()));
         for (distance, world) in &with {
-            let found = mean_luminance(&image(world, &*method));
+            let found = mean_luminance(&image(world, method.renderer()));
             assert!((found / expected - 1.0).abs() < 0.05, "{name} at {distance}: {found}, alone {expected}");
         }
     }
@@ -30,7 +30,7 @@ fn lamps_under_a_sky_are_as_easily_found_beside_a_square_far_away() {
     let open = open + "[environment]\nradiance = [0.05, 0.05, 0.05]\n";
     let (alone, with) = (toml(&open), toml(&(open.clone() + &stray(1e7))));
     for (name, method) in small_methods() {
-        let [expected, found] = [&alone, &with].map(|world| mean_luminance(&image(world, &*method)));
+        let [expected, found] = [&alone, &with].map(|world| mean_luminance(&image(world, method.renderer())));
         assert!((found / expected - 1.0).abs() < 0.05, "{name}: {found}, alone {expected}");
     }
 }
@@ -55,11 +55,11 @@ fn a_ball_on_a_floor_looks_the_same_however_far_the_floor_reaches() {
     let small = toml(&floor(100.0));
     let large = [1e4, 1e6, 1e8].map(|reach| (reach, toml(&floor(reach))));
     for (name, method) in small_methods() {
-        let expected = mean_luminance(&image(&small, &*method));
+        let expected = mean_luminance(&image(&small, method.renderer()));
         // Paths take the same ways; virtual lights are others.
         let tolerance = if name == "path" { 0.002 } else { 0.08 };
         for (reach, world) in &large {
-            let found = mean_luminance(&image(world, &*method));
+            let found = mean_luminance(&image(world, method.renderer()));
             assert!(
                 (found / expected - 1.0).abs() < tolerance,
                 "{name} to {reach}: {found}, to 100 {expected}"

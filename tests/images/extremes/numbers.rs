@@ -110,7 +110,7 @@ fn crops_of_very_large_films_show_what_is_there_by_every_method() {
         let world = world(scene.clone());
         let by_path = mean_luminance(&by_path(&world, 512));
         for (name, method) in small_methods() {
-            let ratio = mean_luminance(&image(&world, &*method)) / by_path;
+            let ratio = mean_luminance(&image(&world, method.renderer())) / by_path;
             assert!((0.9..1.1).contains(&ratio), "{name} at {offset:?}: {ratio}");
         }
     }

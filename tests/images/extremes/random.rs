@@ -73,7 +73,7 @@ fn means(image: &Image) -> [f64; 5] {
 fn rendered(world: &WorldAndView, method: &Method, seed: u32) -> [f64; 5] {
     let mut method = *method;
     assert_eq!(method.set("seed", &seed.to_string()), Ok(true));
-    means(&crate::kit::image(world, &*method))
+    means(&crate::kit::image(world, method.renderer()))
 }
 
 /// The means of the picture mirrored left and right.

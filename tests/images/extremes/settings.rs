@@ -14,13 +14,13 @@ fn with(index: usize, key: &str, value: &str) -> Method {
 #[test]
 fn footprints_of_any_accuracy_and_shape_make_an_image() {
     let world = toml(&room_file(1.0));
-    let expected = mean_luminance(&image(&world, &*small_methods()[1].1));
+    let expected = mean_luminance(&image(&world, small_methods()[1].1.renderer()));
     for shape in ["isotropic", "anisotropic", "occlusion"] {
         for accuracy in ["1e-20,1e-20", "1e20,1e20"] {
             for index in [1, 4] {
                 let mut method = with(index, "footprints", shape);
                 assert_eq!(method.set("accuracy", accuracy), Ok(true));
-                let found = mean_luminance(&image(&world, &*method));
+                let found = mean_luminance(&image(&world, method.renderer()));
                 assert!((found / expected - 1.0).abs() < 0.2, "{shape} {accuracy}: {found} {expected}");
             }
         }
@@ -39,8 +39,8 @@ fn reaches_in_the_wrong_order_and_clamps_that_compensation_cannot_follow_are_ref
 fn the_least_clamp_keeps_the_light() {
     let world = toml(&room_file(1.0));
     for index in [0, 2, 3] {
-        let expected = mean_luminance(&image(&world, &*with(index, "clamp", "0.02")));
-        let found = mean_luminance(&image(&world, &*with(index, "clamp", "0.001")));
+        let expected = mean_luminance(&image(&world, with(index, "clamp", "0.02").renderer()));
+        let found = mean_luminance(&image(&world, with(index, "clamp", "0.001").renderer()));
         assert!((found / expected - 1.0).abs() < 0.03, "{}: {found} {expected}", small_methods()[index].0);
     }
 }

@@ -1,156 +1,177 @@
-//! The picture: eye pass, light pass, trees, the cache, and the rest by cuts.
+//! The image: eye pass, light pass, trees, records, and cuts at the points that records do not reach.
 
 use super::direct_sampling::direct_sampling;
 use super::resolve::resolve;
-use crate::method::ladder::{CUTS, DRAWN};
+use crate::cost::PRICES;
+use crate::method::Output;
 use crate::method::lights::LightStore;
 use crate::method::photon_store::FoundCaustics;
-use crate::method::sampling::method_settings;
-use crate::method::{Before, DrawnPixels, Move, Output, PILOT_SPP, Prepared, Renderer, Sampled, counts};
+use crate::method::prepared::{Preparation, Prepared};
+use crate::method::renderer::{FormerFrames, Noisy, Pilots, Renderer, Walks};
+use crate::method::sampled_pixels::{PILOT_SPP, SampledPixels};
+use crate::method::sampling::{HasSampling, method_settings};
+use crate::method::scale::{CUTS, Demand, Move, SAMPLED, ScaledSetting, Scales};
+use crate::method::tally::Tally;
 use base::film::Window;
 use base::progress::Control;
-use base::setting::{COMPENSATION, Each, INSPECT, Settings as _};
+use base::setting::{COMPENSATION, INSPECT, Value};
 use base::stats::Stage;
 use transport::eye::{DirectSampling, EyePass, EyePilot, EyeSettings, LightSources, Settled};
 use transport::lightcut::{CutSettings, Samples};
 use transport::lights::{Family, LightPassSettings};
 use transport::paths::Estimand;
+use transport::perception::Thresholds;
 use transport::radiance_cache::fill::CacheFrame;
 use transport::radiance_cache::glossy::Glossy;
+use transport::radiance_cache::retained::RetainedRecords;
 use transport::radiance_cache::source::LightcutSource;
 use transport::radiance_cache::store::Records;
 use transport::radiance_cache::targets::Targets;
-use transport::radiance_cache::work::rays_beside_samples;
 use transport::radiance_cache::{CLAMP, CacheSettings, DirectBy, MAX_CUT};
-use transport::shade::{ShadeSettings, ShadedImage, ShadingContext};
+use transport::shade::{ShadeSettings, ShadedImage, ShadingContext, ShadingCounts};
 use world::World;
 use world::view::View;
 
-/// Samples of a cut, at a point that is lit by it alone, times a cut's error ε and the relative error of a pixel's
-/// drawn light: the product of variance and time is least if they are in inverse proportion to that. And their least
-/// number.
+/// Samples of a cut at a point without records, times the cut's ε and the pixel's relative error of direct light.
 ///
-/// Measured (16 samples a pixel, denoised): the cuts of a living room and of a nave take .55 of the time for .07 and
-/// .3 dB; in calm light hardly any point has samples. With half as many, nave loses .4 dB more for a twelfth of the
-/// time.
-const SAMPLES: f32 = 0.6;
-const LEAST_SAMPLES: f32 = 4.0;
+/// Variance times cost is least if the samples are in inverse proportion to that error.
+const CUT_SAMPLES: f32 = 0.6;
+/// Minimum number of samples of a cut.
+const MIN_CUT_SAMPLES: f32 = 4.0;
 
 method_settings! {
     /// Settings of the method.
     spp = 16, "Records" {
         /// Numbers of VPLs; their seed is not used.
         light: LightPassSettings = LightPassSettings { indirect: 600_000, ..LightPassSettings::default() } => [group];
-        /// Accuracy of the cut of an eye sample.
-        cut: CutSettings = CutSettings { clamp: CLAMP, max_cut: MAX_CUT, ..CutSettings::default() } => [by Settings::each_of_cut];
+        /// Accuracy of the cut of an eye sample; cap and clamp are those of records, too.
+        cut: CutSettings = CutSettings { clamp: CLAMP, max_cut: MAX_CUT, ..CutSettings::default() } => [group];
         /// Compensation by short rays for light lost to clamping.
         compensation: bool = true => [is COMPENSATION];
         /// Builder of the light trees.
         family: Family = Family::default() => [group];
         /// Number and accuracy of records.
         cache: CacheSettings = CacheSettings::default() => [group];
-        /// Images of the records, beside the picture; see `radiance_cache::inspect`.
+        /// Images of the records, beside the image; see `radiance_cache::inspect`.
         inspect: bool = false => [is INSPECT];
     }
 }
 
+/// Inputs in which a still and a frame of a walk differ.
+struct FrameInputs<'a> {
+    /// Settings of records.
+    cache: CacheSettings,
+    /// Records of the walk; `None` for a still.
+    kept: Option<&'a mut RetainedRecords>,
+    /// Pixels whose direct light is reprojected.
+    settled: Settled,
+    /// Visibility thresholds of the previous frame.
+    thresholds: Option<&'a Thresholds>,
+    /// Expected work besides the eye samples, in rays; unknown in a walk, which has records already.
+    other_rays: Option<f64>,
+}
+
 impl Settings {
-    /// Visits the settings of cuts; the cap and the clamp are those of records too.
-    fn each_of_cut(&mut self, each: Each) {
-        self.cut.each(each);
-        self.cache.cut.max_cut = self.cut.max_cut;
-        self.cache.cut.clamp = self.cut.clamp;
+    /// Returns the settings of records, whose cuts have the cap and the clamp of other cuts.
+    fn record_settings(&self) -> CacheSettings {
+        let CutSettings { max_cut, clamp, .. } = self.cut;
+        CacheSettings { cut: CutSettings { max_cut, clamp, ..self.cache.cut }, ..self.cache }
     }
 
-    /// Settings of the shading stage of a picture whose pixels have this relative variance.
+    fn still(&self, view: &View) -> FrameInputs<'static> {
+        let pixels = view.window.film_pixel_count() as f64;
+        let other_rays = PRICES.rays_beside_samples(pixels, self.spp.into(), self.light.indirect.into());
+        FrameInputs {
+            cache: self.record_settings(),
+            kept: None,
+            settled: Settled::default(),
+            thresholds: None,
+            other_rays: Some(other_rays),
+        }
+    }
+
+    fn next_frame<'a>(&self, former: FormerFrames<'a>) -> FrameInputs<'a> {
+        let FormerFrames { records, settled, thresholds } = former;
+        let cache = self.record_settings().for_walk();
+        FrameInputs { cache, kept: Some(records), settled, thresholds, other_rays: None }
+    }
+
+    /// Returns the settings of the shading stage for an image whose pixels have this relative variance.
     fn shading(&self, noise: f32) -> ShadeSettings {
-        let samples = Samples { whole: SAMPLES / (self.cut.epsilon * noise.sqrt()), least: LEAST_SAMPLES };
+        let whole = CUT_SAMPLES / (self.cut.epsilon * noise.sqrt());
+        let samples = Samples { whole, least: MIN_CUT_SAMPLES };
         let samples = (noise > 0.0 && self.cache.share).then_some(samples);
         ShadeSettings { cut: self.cut, share: self.cache.share, samples, shadows: self.cache.shadows }
     }
 
-    /// Rays of a still picture of the view's whole film, about, but for its samples.
-    fn rays_beside_samples(&self, view: &View) -> f64 {
-        rays_beside_samples(
-            view.window.film_pixel_count() as f64,
-            self.spp.into(),
-            self.light.indirect.into(),
-        )
-    }
-
-    /// The picture, by records of the frames before where they are `kept`.
-    fn picture(
+    fn image(
         &self,
         world: &World,
         lights: &LightStore,
-        before: Option<Before>,
+        inputs: FrameInputs,
         view: &View,
         control: &Control,
     ) -> Output {
-        let (mut kept, settled, thresholds) = match before {
-            Some(Before { records, settled, thresholds }) => (Some(records), settled, thresholds),
-            None => (None, Settled::default(), None),
-        };
-        let cache = match kept {
-            Some(_) => self.cache.for_walk(),
-            None => self.cache,
-        };
+        let FrameInputs { cache, mut kept, settled, thresholds, other_rays } = inputs;
         let is_still = kept.is_none();
-        let wanted = ((self.light, self.family), is_still);
         let glossy = Glossy::new(world, &cache);
-        let besides = is_still.then(|| self.rays_beside_samples(view));
-        let drawn = direct_sampling(glossy.as_ref(), &cache, settled, besides);
-        let drawn = drawn.map(|drawn| DirectSampling { guides: is_still, ..drawn });
-        let Prepared { eye: samples, lights, mut stats } =
-            Prepared::new(world, lights, view, (self.sampling(), drawn), wanted, control);
+        let direct = direct_sampling(glossy.as_ref(), &cache, settled, other_rays);
+        let direct = direct.map(|direct| DirectSampling { guides: is_still, ..direct });
+        let (sampling, family) = (self.sampling(), self.family);
+        let preparation = Preparation { sampling, direct, lights: self.light, family, for_view: is_still };
+        let Prepared { eye, lights, mut tally } = Prepared::new(world, lights, view, &preparation, control);
         let context = ShadingContext::new(world, &lights, self.compensation);
-        let source = LightcutSource { context, settings: &cache };
 
         let mut own = Records::default();
         let records = match &mut kept {
             Some(kept) => kept.begin(view.camera.origin, &cache),
             None => &mut own,
         };
-        let glossy = glossy.as_ref().and_then(|glossy| glossy.for_points(&samples.points, &cache));
-        let mut targets = Targets::new(&samples.points, &samples.index, glossy);
+        let glossy = glossy.as_ref().and_then(|glossy| glossy.for_points(&eye.points, &cache));
+        let mut targets = Targets::new(&eye.points, &eye.index, glossy);
         if cache.samples_direct_light() {
-            targets = targets.with_baseline(|point| samples.known_luminance(point));
+            targets = targets.with_baseline(|point| eye.known_luminance(point));
         }
         if let Some(thresholds) = thresholds {
             targets = targets.with_visible(|position| thresholds.at(position));
         }
-        let frame = CacheFrame::fill(targets, records, &source, control, &mut stats);
-        counts::cuts(&mut stats, "Records", &frame.cuts);
+        let source = LightcutSource { context, settings: &cache };
+        let frame = CacheFrame::fill(targets, records, &source, control, &mut tally.stats);
+        tally.cuts("Records", &frame.cuts);
 
-        let mut picture = ShadedImage::new(&samples, self.inspect);
-        let tasks = stats.time(Stage::Splat, || {
-            resolve(frame.interpolate(records), &samples, cache.samples_direct_light(), &mut picture)
+        let mut image = ShadedImage::new(&eye, self.inspect);
+        let tasks = tally.time(Stage::Splat, || {
+            resolve(frame.interpolate(records), &eye, cache.samples_direct_light(), &mut image)
         });
-        picture.came_by("records");
+        image.came_by("records");
         control.begin(Stage::Render, tasks.len() as u64);
-        // Noise that the frame before did not have would flicker.
-        let shading = self.shading(if is_still { samples.noise } else { 0.0 });
-        let counts = stats.time(Stage::Render, || {
-            picture.shade(&context, &samples, &tasks, cache.patches, &shading, control)
-        });
-        picture.came_by("cuts");
-        stats.count("Shading/points", samples.points.len() as u64);
-        stats.count("Shading/tasks by cuts", tasks.len() as u64);
-        counts::cuts(&mut stats, "Lightcut", &counts.cuts);
-        if cache.direct == DirectBy::Cuts && !cache.cached().indirect {
-            counts::clamping(&mut stats, &counts.cuts, self.compensation.then_some(&counts.compensation));
-        }
-        counts.shadows.report(&mut stats);
-        let complete = samples.complete && !control.is_cancelled();
-        let (color, mut extra, nonfinite) = picture.finish(&mut stats);
+        // Noise that the previous frame did not have would flicker.
+        let shading = self.shading(if is_still { eye.noise } else { 0.0 });
+        let counts = tally
+            .time(Stage::Render, || image.shade(&context, &eye, &tasks, cache.patches, &shading, control));
+        image.came_by("cuts");
+        tally.count("Shading/points", eye.points.len() as u64);
+        tally.count("Shading/tasks by cuts", tasks.len() as u64);
+        self.report(&counts, &mut tally);
+        let complete = eye.complete && !control.is_cancelled();
+        let (color, mut extra, nonfinite) = image.finish(&mut tally.stats);
         if self.inspect {
-            extra.extend(frame.inspect(records, &samples));
+            extra.extend(frame.inspect(records, &eye));
         }
         if let Some(kept) = kept {
-            kept.end(&frame, view.camera.origin, &mut stats);
+            kept.end(&frame, view.camera.origin, &mut tally.stats);
         }
-        let guides = samples.guides.as_ref().map_or_else(Vec::new, |guides| guides.layers(&view.window));
-        Output { extra, guides, complete, nonfinite, ..Output::new(color, stats) }
+        let guides = eye.guides.as_ref().map_or_else(Vec::new, |guides| guides.layers(&view.window));
+        Output { extra, guides, complete, nonfinite, ..Output::new(color, tally) }
+    }
+
+    /// Reports the counts of the shading stage.
+    fn report(&self, counts: &ShadingCounts, tally: &mut Tally) {
+        tally.cuts("Lightcut", &counts.cuts);
+        if self.cache.direct == DirectBy::Cuts && !self.cache.cached().indirect {
+            tally.clamping(&counts.cuts, self.compensation.then_some(&counts.compensation));
+        }
+        counts.shadows.report(&mut tally.stats);
     }
 }
 
@@ -160,30 +181,11 @@ impl Renderer for Settings {
     }
 
     fn about(&self) -> &'static str {
-        "The radiance cache: direct light drawn, indirect light at records, splatted onto the points around them"
+        "Radiance cache: direct light by sampling, indirect light by records that are splatted onto nearby points"
     }
 
     fn render(&self, world: &World, lights: &LightStore, view: &View, control: &Control) -> Output {
-        self.picture(world, lights, None, view, control)
-    }
-
-    fn render_next(
-        &self,
-        world: &World,
-        lights: &LightStore,
-        before: Before,
-        view: &View,
-        control: &Control,
-    ) -> Output {
-        self.picture(world, lights, Some(before), view, control)
-    }
-
-    fn finds_guides(&self) -> bool {
-        self.cache.samples_direct_light() && self.spp > 1
-    }
-
-    fn keeps_records(&self) -> bool {
-        true
+        self.image(world, lights, self.still(view), view, control)
     }
 
     fn check(&self) -> Result<(), String> {
@@ -196,26 +198,8 @@ impl Renderer for Settings {
         }
     }
 
-    fn draw_pixels(
-        &self,
-        world: &World,
-        lights: &LightStore,
-        view: &View,
-        groups: &[Vec<[u32; 2]>],
-        control: &Control,
-    ) -> Option<DrawnPixels> {
-        let glossy = Glossy::new(world, &self.cache);
-        let drawn = direct_sampling(glossy.as_ref(), &self.cache, Settled::default(), None)?;
-        let settings = EyeSettings { spp: PILOT_SPP, seed: 0, ..self.sampling().eye(&world.scene) };
-        let FoundCaustics { caustics, rays, shadow_rays, .. } =
-            lights.photons.few((world, view), settings, control);
-        let sources = LightSources { direct: &drawn, caustics: caustics.as_ref() };
-        let found = EyePass::pilot(world, view, settings, sources, groups, control);
-        let EyePilot { luminances, photons, sampled, learned } = found;
-        let luminances = luminances.map(|by_group| by_group.into_iter().flatten().map(f64::from).collect());
-        let [sampled, learned] = [sampled, learned].map(|chains| chains.rays + chains.shadow_rays);
-        let pixels = DrawnPixels::new(luminances, sampled, learned + rays + shadow_rays);
-        (!control.is_cancelled()).then_some(DrawnPixels { photons, ..pixels })
+    fn estimand(&self) -> Estimand {
+        self.cache.estimand(self.spp, self.seed)
     }
 
     fn expected_bytes(&self, window: &Window) -> u64 {
@@ -223,15 +207,109 @@ impl Renderer for Settings {
         EyePass::expected_bytes(window, self.cache.points_per_pixel(self.spp)).saturating_add(lights)
     }
 
-    fn estimand(&self) -> Estimand {
-        self.cache.estimand(self.spp, self.seed)
+    fn as_walks(&self) -> Option<&dyn Walks> {
+        Some(self)
     }
 
+    fn as_noisy(&self) -> Option<&dyn Noisy> {
+        Some(self)
+    }
+
+    fn as_pilots(&self) -> Option<&dyn Pilots> {
+        Some(self)
+    }
+
+    fn as_scales(&self) -> Option<&dyn Scales> {
+        Some(self)
+    }
+
+    fn as_scales_mut(&mut self) -> Option<&mut dyn Scales> {
+        Some(self)
+    }
+}
+
+impl Walks for Settings {
+    fn render_next(
+        &self,
+        world: &World,
+        lights: &LightStore,
+        former: FormerFrames,
+        view: &View,
+        control: &Control,
+    ) -> Output {
+        self.image(world, lights, self.next_frame(former), view, control)
+    }
+}
+
+impl Noisy for Settings {
     fn leaves_noise(&self) -> bool {
         self.cache.samples_direct_light()
     }
 
-    fn ladder(&self) -> &'static [Move] {
-        if self.cache.samples_direct_light() { &DRAWN } else { &CUTS }
+    fn finds_guides(&self) -> bool {
+        self.cache.samples_direct_light() && self.spp > 1
+    }
+}
+
+impl Pilots for Settings {
+    fn sample_pixels(
+        &self,
+        world: &World,
+        lights: &LightStore,
+        view: &View,
+        groups: &[Vec<[u32; 2]>],
+        control: &Control,
+    ) -> Option<SampledPixels> {
+        let glossy = Glossy::new(world, &self.cache);
+        let direct = direct_sampling(glossy.as_ref(), &self.cache, Settled::default(), None)?;
+        let settings = EyeSettings { spp: PILOT_SPP, seed: 0, ..self.sampling().eye(&world.scene) };
+        let FoundCaustics { caustics, rays, shadow_rays, .. } =
+            lights.photons.pilot(world, view, settings, control);
+        let sources = LightSources { direct: &direct, caustics: caustics.as_ref() };
+        let found = EyePass::pilot(world, view, settings, sources, groups, control);
+        let EyePilot { luminances, photons, sampled, learned } = found;
+        let luminances = luminances.map(|by_group| by_group.into_iter().flatten().map(f64::from).collect());
+        let [sampled, learned] = [sampled, learned].map(|chains| chains.rays + chains.shadow_rays);
+        let pixels = SampledPixels::new(luminances, sampled, learned + rays + shadow_rays);
+        (!control.is_cancelled()).then_some(SampledPixels { photons, ..pixels })
+    }
+}
+
+impl Scales for Settings {
+    fn moves(&self) -> &'static [Move] {
+        if self.cache.samples_direct_light() { &SAMPLED } else { &CUTS }
+    }
+
+    fn scaled(&mut self, setting: ScaledSetting) -> Option<&mut dyn Value> {
+        Some(match setting {
+            ScaledSetting::Spp => &mut self.spp,
+            ScaledSetting::Epsilon => &mut self.cut.epsilon,
+            ScaledSetting::MaxCut => &mut self.cut.max_cut,
+            ScaledSetting::Vpls => &mut self.light.indirect,
+            ScaledSetting::Patches => &mut self.cache.patches,
+            ScaledSetting::RecordEpsilon => &mut self.cache.cut.epsilon,
+        })
+    }
+
+    fn demand(&self) -> Demand {
+        Demand {
+            direct_vpls: self.light.direct,
+            vpls: self.light.indirect,
+            extra_samples: self.cache.extra_samples,
+            shares_patches: true,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn cuts_of_records_have_the_cap_and_the_clamp_of_other_cuts_but_an_error_of_their_own() {
+        let mut settings = Settings::default();
+        (settings.cut.max_cut, settings.cut.clamp, settings.cut.epsilon) = (7, None, 0.5);
+        let CutSettings { max_cut, clamp, epsilon, .. } = settings.record_settings().cut;
+        assert_eq!((max_cut, clamp, epsilon), (7, None, settings.cache.cut.epsilon));
     }
 }

@@ -1,6 +1,6 @@
 //! Tiles of the film, block by block: eye samples share cuts within blocks of pixels.
 //!
-//! Blocks are aligned to the film and always computed whole, so a crop repeats the whole picture's pixels.
+//! Blocks are aligned to the film and always computed completely, so that a crop has the pixels of the full image.
 
 use base::film::Window;
 use base::math::Rgb;
@@ -10,42 +10,42 @@ use std::ops::Range;
 use transport::eye::{EyeCounts, EyeRays, VisibleSurfaces};
 use transport::shade::{Shader, ShadingCounts};
 
-/// Pixels along the edge of a tile, within which occluders are remembered.
+/// Side of a tile, within which occluders are cached, in pixels.
 pub const TILE: u32 = 16;
-/// Pixels along the edge of a block, within which eye samples may share a cut.
+/// Side of a block, within which eye samples may share a cut, in pixels.
 const BLOCK: u32 = 4;
-/// Maximum number of eye rays of a pixel that are held at a time: all of very many would not fit into memory.
-const MOST_RAYS: u32 = 1024;
+/// Maximum number of eye rays of a pixel that are in memory at a time.
+const MAX_RAYS: u32 = 1024;
 
-/// The tiles of a frame.
-pub struct Tiles<'a, 'w> {
+/// Inputs of all tiles of a frame.
+pub struct BlockTiles<'a, 'w> {
     pub rays: EyeRays<'a, 'w>,
     pub window: &'a Window,
-    /// Eye rays a pixel.
+    /// Eye rays per pixel.
     pub spp: u32,
     pub control: &'a Control,
 }
 
-/// A tile's pixels in the window, and the work done for them.
+/// Pixels of a tile in the window, and the work that they took.
 #[derive(Default)]
-pub struct Tile {
-    /// Index in the window, radiance, and mean number of clusters in the cuts of a sample.
+pub struct LitTile {
+    /// Index in the window, radiance, and mean number of clusters in the cuts of a sample, by pixel.
     pub pixels: Vec<(usize, Rgb, f32)>,
     pub counts: ShadingCounts,
     pub chains: EyeCounts,
-    /// Samples that were not finite and left out.
+    /// Samples that were not finite and were left out.
     pub nonfinite: u64,
 }
 
-impl<'w> Tiles<'_, 'w> {
-    /// Shades the tile whose first film pixel is `corner`; `None` once cancelled.
+impl<'w> BlockTiles<'_, 'w> {
+    /// Shades the tile whose first film pixel is `corner`; `None` if cancelled.
     pub fn shade(
         &self,
         corner: [u32; 2],
         shader: &mut Shader<'_, 'w>,
         seen: &mut VisibleSurfaces<'w>,
-    ) -> Option<Tile> {
-        let mut tile = Tile::default();
+    ) -> Option<LitTile> {
+        let mut tile = LitTile::default();
         shader.begin_chunk();
         for y in (corner[1]..corner[1] + TILE).step_by(BLOCK as usize) {
             for x in (corner[0]..corner[0] + TILE).step_by(BLOCK as usize) {
@@ -61,19 +61,20 @@ impl<'w> Tiles<'_, 'w> {
         Some(tile)
     }
 
+    /// Shades the pixels of a block, and adds those in the window to `tile`.
     fn block(
         &self,
         [left, top]: [u32; 2],
         shader: &mut Shader<'_, 'w>,
         seen: &mut VisibleSurfaces<'w>,
-        tile: &mut Tile,
+        tile: &mut LitTile,
     ) {
         if pixels_of([left, top]).all(|pixel| self.window.index(pixel).is_none()) {
             return;
         }
         let mut sums = [(Rgb::ZERO, 0.0); (BLOCK * BLOCK) as usize];
-        for first in (0..self.spp).step_by(MOST_RAYS as usize) {
-            let samples = first..first + MOST_RAYS.min(self.spp - first);
+        for first in (0..self.spp).step_by(MAX_RAYS as usize) {
+            let samples = first..first + MAX_RAYS.min(self.spp - first);
             tile.nonfinite += self.add_samples([left, top], samples, &mut sums, shader, seen);
         }
         for (pixel, (sum, clusters)) in pixels_of([left, top]).zip(sums) {
@@ -83,8 +84,9 @@ impl<'w> Tiles<'_, 'w> {
         }
     }
 
-    /// Adds the radiance and the clusters of some eye rays of each pixel of a block; returns the number of rays whose
-    /// radiance is not finite.
+    /// Adds the radiance and the clusters of some eye rays of each pixel of a block.
+    ///
+    /// Returns the number of rays whose radiance is not finite.
     fn add_samples(
         &self,
         corner: [u32; 2],
@@ -126,7 +128,7 @@ impl<'w> Tiles<'_, 'w> {
     }
 }
 
-/// Pixels of the block whose first one is `corner`.
+/// Iterates over the pixels of a block, given its first.
 fn pixels_of([left, top]: [u32; 2]) -> impl Iterator<Item = [u32; 2]> {
     (top..top + BLOCK).flat_map(move |y| (left..left + BLOCK).map(move |x| [x, y]))
 }

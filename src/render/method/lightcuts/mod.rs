@@ -2,8 +2,8 @@
 //!
 //! Paper: Walter et al., *Lightcuts*, 2005; "LC" in Herzog et al. 2009, section 6, over direct and indirect VPLs.
 //!
-//! Use it where a picture without noise is wanted and a small, smooth error is not in the way. Light that reaches
-//! visible surfaces through glass or by mirrors is found by four paths from each eye sample, with their noise.
+//! Use it for images without noise if a small, smooth error is acceptable. Light that reaches visible surfaces through
+//! glass or over mirrors is found by four paths from each eye sample, with their noise.
 
 mod blocks;
 mod render;

@@ -1,15 +1,17 @@
-//! The picture: light pass, trees, then pixels in tiles.
+//! The image: light pass, trees, then pixels in tiles.
 
-use super::blocks::{TILE, Tile, Tiles};
-use crate::method::ladder::CUTS;
+use super::blocks::{BlockTiles, LitTile, TILE};
+use crate::method::Output;
 use crate::method::lights::{LightStore, lights_wanted};
-use crate::method::sampling::method_settings;
-use crate::method::{Move, Output, Renderer, Sampled, counts};
+use crate::method::renderer::Renderer;
+use crate::method::sampling::{HasSampling, method_settings};
+use crate::method::scale::{CUTS, Demand, Move, ScaledSetting, Scales};
+use crate::method::tally::Tally;
 use base::film::{Image, Layer, Window};
 use base::parallel::{ShortRuns, Workspaces};
 use base::progress::Control;
-use base::setting::{COMPENSATION, SHARE};
-use base::stats::{Contributions, Stage, Stats};
+use base::setting::{COMPENSATION, SHARE, Value};
+use base::stats::{Contributions, Stage};
 use rayon::prelude::*;
 use transport::eye::{EyeRays, LightBySpecularLobes, VisibleSurfaces};
 use transport::lightcut::CutSettings;
@@ -46,43 +48,24 @@ impl Renderer for Settings {
         "Lightcuts per pixel: virtual point lights, clustered as far as the expected error allows"
     }
 
-    fn expected_bytes(&self, window: &Window) -> u64 {
-        Image::expected_bytes(window) + self.light.expected_bytes()
-    }
-
     fn render(&self, world: &World, lights: &LightStore, view: &View, control: &Control) -> Output {
-        let mut stats = Stats::new();
-        let wanted = lights_wanted(world, self.sampling(), (self.light, self.family), Vec::new());
-        let eye = self.sampling().eye(&world.scene);
-        let caustics = lights.photons.of_picture((world, view), eye, control, &mut stats);
-        let lights = lights.get(world, wanted, control, &mut stats);
+        let mut tally = Tally::default();
+        let sampling = self.sampling();
+        let eye = sampling.eye(&world.scene);
+        let caustics = lights.photons.for_image(world, view, eye, control, &mut tally);
+        let wanted = lights_wanted(world, sampling, self.light, self.family, Vec::new());
+        let lights = lights.get(world, wanted, control, &mut tally);
         let context = ShadingContext::new(world, &lights, self.compensation);
-        let shading =
-            ShadeSettings { cut: self.cut, share: self.share, samples: None, shadows: self.shadows };
-        let tiles =
-            Tiles { rays: EyeRays::new(world, view, eye), window: &view.window, spp: eye.spp, control };
-
-        let corners: Vec<[u32; 2]> = view.window.film_squares(TILE).collect();
-        control.begin(Stage::Render, corners.len() as u64);
-        let works = Workspaces::new(|| (Shader::new(&context, &shading), VisibleSurfaces::default()));
-        let done: Vec<Option<Tile>> = stats.time(Stage::Render, || {
-            let shade = |&corner: &[u32; 2]| {
-                if control.is_cancelled() {
-                    return None;
-                }
-                let tile = works.with(|(shader, seen)| tiles.shade(corner, shader, seen))?;
-                control.advance(1);
-                Some(tile)
-            };
-            corners.par_iter().one_by_one().map(shade).collect()
-        });
+        let rays = EyeRays::new(world, view, eye);
+        let tiles = BlockTiles { rays, window: &view.window, spp: eye.spp, control };
+        let tiles = tally.time(Stage::Render, || self.tiles(&context, &tiles, control));
 
         let mut color = Image::new(view.window.width, view.window.height);
         let mut cut_size = color.map(|_| 0.0);
-        let light = stats
+        let light = tally
             .time(Stage::Render, || LightBySpecularLobes::new(world, view, eye, caustics.as_ref(), control));
         let (mut work, mut chains, mut nonfinite) = (ShadingCounts::default(), light.chains, light.nonfinite);
-        for tile in done.iter().flatten() {
+        for tile in tiles.iter().flatten() {
             for &(pixel, radiance, clusters) in &tile.pixels {
                 color.pixels[pixel] = radiance;
                 cut_size.pixels[pixel] = clusters;
@@ -94,18 +77,67 @@ impl Renderer for Settings {
         let mut contributions = Contributions::default();
         contributions.add("cuts and emitters in view", color.luminance());
         light.add_to(&mut color, &mut contributions);
-        contributions.report(&mut stats);
-        stats.count("Rays/shadow packets", work.cuts.packets);
-        work.shadows.report(&mut stats);
-        counts::cuts(&mut stats, "Lightcut", &work.cuts);
-        counts::clamping(&mut stats, &work.cuts, self.compensation.then_some(&work.compensation));
-        counts::eye(&mut stats, &chains);
-        let complete = done.iter().all(Option::is_some) && !control.is_cancelled();
+        contributions.report(&mut tally.stats);
+        tally.count("Rays/shadow packets", work.cuts.packets);
+        work.shadows.report(&mut tally.stats);
+        tally.cuts("Lightcut", &work.cuts);
+        tally.clamping(&work.cuts, self.compensation.then_some(&work.compensation));
+        tally.eye(&chains);
+        let complete = tiles.iter().all(Option::is_some) && !control.is_cancelled();
         let extra = vec![Layer::scalar("cut", cut_size)];
-        Output { extra, complete, nonfinite, ..Output::new(color, stats) }
+        Output { extra, complete, nonfinite, ..Output::new(color, tally) }
     }
 
-    fn ladder(&self) -> &'static [Move] {
+    fn expected_bytes(&self, window: &Window) -> u64 {
+        Image::expected_bytes(window) + self.light.expected_bytes()
+    }
+
+    fn as_scales(&self) -> Option<&dyn Scales> {
+        Some(self)
+    }
+
+    fn as_scales_mut(&mut self) -> Option<&mut dyn Scales> {
+        Some(self)
+    }
+}
+
+impl Settings {
+    /// Shades all tiles; `None` for those that were cancelled.
+    fn tiles(&self, context: &ShadingContext, tiles: &BlockTiles, control: &Control) -> Vec<Option<LitTile>> {
+        let corners: Vec<[u32; 2]> = tiles.window.film_squares(TILE).collect();
+        control.begin(Stage::Render, corners.len() as u64);
+        let settings =
+            ShadeSettings { cut: self.cut, share: self.share, samples: None, shadows: self.shadows };
+        let workspaces = Workspaces::new(|| (Shader::new(context, &settings), VisibleSurfaces::default()));
+        let shade = |&corner: &[u32; 2]| {
+            if control.is_cancelled() {
+                return None;
+            }
+            let tile = workspaces.with(|(shader, seen)| tiles.shade(corner, shader, seen))?;
+            control.advance(1);
+            Some(tile)
+        };
+        corners.par_iter().one_by_one().map(shade).collect()
+    }
+}
+
+impl Scales for Settings {
+    fn moves(&self) -> &'static [Move] {
         &CUTS
+    }
+
+    fn scaled(&mut self, setting: ScaledSetting) -> Option<&mut dyn Value> {
+        Some(match setting {
+            ScaledSetting::Spp => &mut self.spp,
+            ScaledSetting::Epsilon => &mut self.cut.epsilon,
+            ScaledSetting::MaxCut => &mut self.cut.max_cut,
+            ScaledSetting::Vpls => &mut self.light.indirect,
+            ScaledSetting::Patches | ScaledSetting::RecordEpsilon => return None,
+        })
+    }
+
+    fn demand(&self) -> Demand {
+        let LightPassSettings { direct, indirect, .. } = self.light;
+        Demand { direct_vpls: direct, vpls: indirect, extra_samples: 0.0, shares_patches: false }
     }
 }

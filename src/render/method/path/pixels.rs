@@ -1,6 +1,6 @@
-//! Single pixels, each with as many paths as are wanted for it.
+//! Single pixels, each with its own number of paths.
 
-use crate::method::{DrawnPixels, PILOT_SPP};
+use crate::method::sampled_pixels::{PILOT_SPP, SampledPixels};
 use base::math::luminance;
 use base::parallel::ShortRuns;
 use base::progress::Control;
@@ -11,37 +11,50 @@ use transport::paths::{Batch, Estimand, PathStart, RayCounts, start};
 use world::World;
 use world::view::View;
 
-/// Maximum number of paths of one pixel that are traced together with those of the others.
-const TOGETHER: u32 = 64;
+/// Maximum number of paths of one pixel in a batch.
+const BATCH: u32 = 64;
 
 /// Seeds of the two sets of samples of a pilot.
 const PILOT_SEEDS: [u32; 2] = [0x5bd1_e995, 0x2c1b_3c6d];
 
-/// A pixel whose radiance is wanted.
+/// A pixel to be traced.
 #[derive(Clone, Copy, Debug)]
-pub struct Wanted {
+pub struct PixelPaths {
     /// Column and row in the film.
     pub pixel: [u32; 2],
-    /// Paths through it; for [`Estimand::EyeSamples`] a multiple of their number, so that each has the same share.
+    /// Number of paths. For [`Estimand::EyeSamples`] it must be a multiple of the eye samples, so that each has the
+    /// same share.
     pub samples: u32,
 }
 
-/// Computes the mean radiance of each pixel over its paths, and the number of radiances that were not finite
-/// and count as 0. Another `seed` gives independent means.
+/// Sampling of single pixels.
+#[derive(Clone, Copy, Debug)]
+pub struct PixelSampling {
+    /// Quantity that a pixel estimates.
+    pub estimand: Estimand,
+    /// Seed; another one gives independent means.
+    pub seed: u32,
+    /// Maximum path length in edges.
+    pub max_depth: u32,
+}
+
+/// Computes the mean radiance of each pixel over its paths.
+///
+/// The second result is the number of radiances that were not finite and count as 0.
 pub fn pixel_means(
     world: &World,
     view: &View,
-    estimand: Estimand,
-    wanted: &[Wanted],
-    (seed, max_depth): (u32, u32),
+    sampling: PixelSampling,
+    wanted: &[PixelPaths],
     counts: &mut RayCounts,
 ) -> (Vec<DVec3>, u64) {
+    let PixelSampling { estimand, seed, max_depth } = sampling;
     let mut sums = vec![DVec3::ZERO; wanted.len()];
     let mut nonfinite = 0;
     let mut batch = Batch::default();
     let most = wanted.iter().map(|w| w.samples).max().unwrap_or(0);
-    for first in (0..most).step_by(TOGETHER as usize) {
-        let samples = |w: &Wanted| first.min(w.samples)..(first + TOGETHER).min(w.samples);
+    for first in (0..most).step_by(BATCH as usize) {
+        let samples = |w: &PixelPaths| first.min(w.samples)..(first + BATCH).min(w.samples);
         let paths =
             wanted.iter().flat_map(|w| samples(w).map(|sample| PathStart { pixel: w.pixel, sample, seed }));
         start(&mut batch, paths, world, view, estimand, most);
@@ -62,34 +75,31 @@ pub fn pixel_means(
     (sums, nonfinite)
 }
 
-/// The light of groups of film pixels by two sets of paths; `None` if cancelled.
-pub(super) fn draw_pixels(
+/// Samples groups of film pixels by two sets of paths; `None` if cancelled.
+pub(super) fn sample_pixels(
     world: &World,
     view: &View,
     max_depth: Option<u32>,
     groups: &[Vec<[u32; 2]>],
     control: &Control,
-) -> Option<DrawnPixels> {
+) -> Option<SampledPixels> {
     let max_depth = world.scene.path_limit(max_depth);
-    let found: Vec<([Vec<f64>; 2], RayCounts)> = groups
-        .par_iter()
-        .one_by_one()
-        .map(|pixels| {
-            let mut counts = RayCounts::default();
-            let wanted: Vec<Wanted> =
-                pixels.iter().map(|&pixel| Wanted { pixel, samples: PILOT_SPP }).collect();
-            let luminances = PILOT_SEEDS.map(|seed| {
-                if control.is_cancelled() {
-                    return Vec::new();
-                }
-                let of = (seed, max_depth);
-                let (means, _) = pixel_means(world, view, Estimand::Pixels, &wanted, of, &mut counts);
-                means.into_iter().map(|mean| f64::from(luminance(mean.as_vec3()))).collect()
-            });
-            (luminances, counts)
-        })
-        .collect();
+    let sample = |pixels: &Vec<[u32; 2]>| {
+        let mut counts = RayCounts::default();
+        let wanted: Vec<PixelPaths> =
+            pixels.iter().map(|&pixel| PixelPaths { pixel, samples: PILOT_SPP }).collect();
+        let luminances = PILOT_SEEDS.map(|seed| {
+            if control.is_cancelled() {
+                return Vec::new();
+            }
+            let sampling = PixelSampling { estimand: Estimand::Pixels, seed, max_depth };
+            let (means, _) = pixel_means(world, view, sampling, &wanted, &mut counts);
+            means.into_iter().map(|mean| f64::from(luminance(mean.as_vec3()))).collect()
+        });
+        (luminances, counts)
+    };
+    let found: Vec<([Vec<f64>; 2], RayCounts)> = groups.par_iter().one_by_one().map(sample).collect();
     let rays = found.iter().map(|(_, counts)| counts.rays + counts.shadow_rays).sum();
     let luminances = [0, 1].map(|set| found.iter().flat_map(|(sets, _)| &sets[set]).copied().collect());
-    (!control.is_cancelled()).then(|| DrawnPixels::new(luminances, rays, 0))
+    (!control.is_cancelled()).then(|| SampledPixels::new(luminances, rays, 0))
 }

@@ -1,37 +1,33 @@
-//! The picture: pixels in tiles, samples in passes.
+//! The image: pixels in tiles, samples in passes.
 
-use super::Begun;
-use super::pixels::draw_pixels;
-use crate::method::ladder::PATHS;
+use super::partial::PartialImage;
+use super::pixels::sample_pixels;
+use super::tile::{PASS, PathTile, TILE, TileInputs};
+use crate::method::Output;
+use crate::method::lights::LightStore;
+use crate::method::renderer::{Noisy, Pilots, Renderer, Resumes};
+use crate::method::sampled_pixels::SampledPixels;
 use crate::method::sampling::method_settings;
-use crate::method::{DrawnPixels, LightStore, Move, Output, Renderer};
+use crate::method::scale::{Demand, Move, PATHS, ScaledSetting, Scales};
+use crate::method::tally::Tally;
 use base::film::Image;
 use base::math::Rgb;
 use base::parallel::{ShortRuns, Workspaces};
 use base::progress::Control;
-use base::stats::{Stage, Stats};
+use base::setting::Value;
+use base::stats::Stage;
 use rayon::prelude::*;
-use transport::eye::{FeatureSettings, FirstSurfaces, FullPaths, Guide, PackedGuide, PackedGuides};
-use transport::paths::{Batch, Estimand, PathStart, RayCounts, start};
+use transport::eye::{PackedGuide, PackedGuides};
+use transport::paths::{Batch, Estimand};
 use world::World;
 use world::view::View;
-
-/// Pixels along a tile's edge.
-const TILE: u32 = 16;
-
-/// Samples a pixel takes before the next pass; a cancelled render keeps whole passes of each tile.
-const PASS: u32 = 16;
-
-/// Samples of a tile's pixels that are traced together: enough paths to fill packets to the end, few enough
-/// for the second-level cache.
-const BATCH: u32 = 4;
 
 method_settings! {
     /// Settings of the method.
     spp = 64, "" {
-        /// Value that a pixel is to have.
+        /// Quantity that a pixel estimates.
         estimand: Estimand = Estimand::Pixels;
-        /// True if a denoiser's guides are to be found on the way.
+        /// True if renders return a denoiser's guides.
         guides: bool = false;
     }
 }
@@ -46,110 +42,163 @@ impl Renderer for Settings {
     }
 
     fn render(&self, world: &World, _lights: &LightStore, view: &View, control: &Control) -> Output {
-        self.picture(world, None, view, control)
-    }
-
-    fn render_rest(
-        &self,
-        world: &World,
-        _lights: &LightStore,
-        begun: &Begun,
-        view: &View,
-        control: &Control,
-    ) -> Output {
-        self.picture(world, Some(begun), view, control)
+        self.image(world, None, view, control)
     }
 
     fn estimand(&self) -> Estimand {
         self.estimand
     }
 
-    fn find_guides(&mut self) {
-        self.guides = self.estimand == Estimand::Pixels;
+    fn as_resumes(&self) -> Option<&dyn Resumes> {
+        Some(self)
+    }
+
+    fn as_noisy(&self) -> Option<&dyn Noisy> {
+        Some(self)
+    }
+
+    fn as_pilots(&self) -> Option<&dyn Pilots> {
+        Some(self)
+    }
+
+    fn as_scales(&self) -> Option<&dyn Scales> {
+        Some(self)
+    }
+
+    fn as_scales_mut(&mut self) -> Option<&mut dyn Scales> {
+        Some(self)
+    }
+}
+
+impl Resumes for Settings {
+    fn render_rest(&self, world: &World, partial: &PartialImage, view: &View, control: &Control) -> Output {
+        self.image(world, Some(partial), view, control)
+    }
+}
+
+impl Noisy for Settings {
+    fn leaves_noise(&self) -> bool {
+        false
     }
 
     fn finds_guides(&self) -> bool {
         self.guides
     }
+}
 
-    fn draw_pixels(
+impl Pilots for Settings {
+    fn sample_pixels(
         &self,
         world: &World,
-        _: &LightStore,
+        _lights: &LightStore,
         view: &View,
         groups: &[Vec<[u32; 2]>],
         control: &Control,
-    ) -> Option<DrawnPixels> {
-        draw_pixels(world, view, self.max_depth, groups, control)
+    ) -> Option<SampledPixels> {
+        sample_pixels(world, view, self.max_depth, groups, control)
+    }
+}
+
+impl Scales for Settings {
+    fn moves(&self) -> &'static [Move] {
+        &PATHS
     }
 
-    fn ladder(&self) -> &'static [Move] {
-        &PATHS
+    fn scaled(&mut self, setting: ScaledSetting) -> Option<&mut dyn Value> {
+        (setting == ScaledSetting::Spp).then_some(&mut self.spp as &mut dyn Value)
+    }
+
+    fn demand(&self) -> Demand {
+        Demand::default()
     }
 }
 
 impl Settings {
-    /// The picture, from where an interrupted one ended.
-    fn picture(&self, world: &World, begun: Option<&Begun>, view: &View, control: &Control) -> Output {
-        let mut stats = Stats::new();
-        let tile = |i| begun.and_then(|begun| Tile::of(begun, view, self.spp, i)).unwrap_or_default();
-        let mut tiles: Vec<Tile> = (0..view.window.tile_count(TILE)).map(tile).collect();
-        let passes = self.spp.div_ceil(PASS);
-        // Those of earlier samples are gone, and paths that may not go on say nothing of surfaces.
-        let goes_on = world.scene.path_limit(self.max_depth) > 1;
-        let finds_guides = self.guides && goes_on && tiles.iter().all(|tile| tile.samples == 0);
-        control.begin(Stage::Render, passes as u64 * tiles.len() as u64);
-        let batches = Workspaces::new(Batch::default);
-        stats.time(Stage::Render, || {
-            for pass in 0..passes {
-                if control.is_cancelled() {
-                    break;
-                }
-                let end = (pass * PASS).saturating_add(PASS).min(self.spp);
-                tiles.par_iter_mut().one_by_one().enumerate().for_each(|(i, tile)| {
-                    if !control.is_cancelled() {
-                        let settings = Settings { guides: finds_guides, ..*self };
-                        batches.with(|batch| tile.render((world, view), &settings, (i, end), batch));
-                        control.advance(1);
-                    }
-                });
-            }
-        });
-        let mut color = Image::new(view.window.width, view.window.height);
-        let mut squares = Image::new(view.window.width, view.window.height);
-        let mut samples = squares.map(|_| 0);
-        let mut guides = vec![PackedGuide::default(); if finds_guides { color.pixels.len() } else { 0 }];
-        let (mut rays, mut shadow_rays, mut paths) = (0, 0, 0);
-        let mut nonfinite = begun.map_or(0, |begun| begun.nonfinite);
-        for (i, tile) in tiles.iter().enumerate() {
-            for (pixel, [x, y]) in tile.pixels.iter().zip(view.window.tile(i, TILE)) {
-                let at = (y * view.window.width + x) as usize;
-                color.pixels[at] = pixel.mean;
-                // Squares of radiances that f32 holds may be beyond it.
-                squares.pixels[at] = pixel.squares.min(Rgb::splat(f32::MAX));
-                samples.pixels[at] = tile.samples;
-            }
-            for (guide, [x, y]) in tile.guides.iter().zip(view.window.tile(i, TILE)) {
-                guides[(y * view.window.width + x) as usize] = guide.kept(tile.samples);
-            }
-            paths += tile.paths;
-            rays += tile.counts.rays;
-            shadow_rays += tile.counts.shadow_rays;
-            nonfinite += tile.nonfinite;
+    /// Makes renders return a denoiser's guides, if pixels are means over their squares.
+    pub fn find_guides(&mut self) {
+        self.guides = self.estimand == Estimand::Pixels;
+    }
+
+    /// Renders the image, from the end of an interrupted one if there is one.
+    fn image(&self, world: &World, partial: Option<&PartialImage>, view: &View, control: &Control) -> Output {
+        let mut tally = Tally::default();
+        let tile = |i| partial.and_then(|p| PathTile::of(p, view, self.spp, i)).unwrap_or_default();
+        let mut tiles: Vec<PathTile> = (0..view.window.tile_count(TILE)).map(tile).collect();
+        let Settings { estimand, spp, seed, .. } = *self;
+        let max_depth = world.scene.path_limit(self.max_depth);
+        // Guides of earlier samples are lost, and paths of one edge meet no surface.
+        let guides = self.guides && max_depth > 1 && tiles.iter().all(|tile| tile.samples == 0);
+        let inputs = TileInputs { world, view, estimand, spp, seed, max_depth, guides };
+        tally.time(Stage::Render, || render_tiles(&mut tiles, &inputs, control));
+
+        for tile in &tiles {
+            tally.count("Paths/total", tile.paths);
+            tally.rays(tile.counts.rays);
+            tally.shadow_rays("Rays/shadow", tile.counts.shadow_rays);
         }
-        stats.count("Paths/total", paths);
-        stats.count("Rays/closest hit", rays);
-        stats.count("Rays/shadow", shadow_rays);
-        let complete = tiles.iter().all(|t| t.samples == self.spp);
-        // With a single sample there is no spread to measure.
-        let variance = (self.spp > 1).then(|| variance(&squares, &samples));
-        let begun = Begun::layers(squares, samples);
-        let guides = if finds_guides { PackedGuides(guides).layers(&view.window) } else { Vec::new() };
-        Output { variance, begun, guides, complete, nonfinite, ..Output::new(color, stats) }
+        let TileImages { color, squares, samples, guides } = TileImages::new(&tiles, view, guides);
+        let complete = tiles.iter().all(|tile| tile.samples == spp);
+        let nonfinite = partial.map_or(0, |partial| partial.nonfinite)
+            + tiles.iter().map(|tile| tile.nonfinite).sum::<u64>();
+        // A single sample has no variance.
+        let variance = (spp > 1).then(|| variance(&squares, &samples));
+        let resumable = PartialImage::layers(squares, samples);
+        let guides = guides.map_or_else(Vec::new, |guides| guides.layers(&view.window));
+        Output { variance, resumable, guides, complete, nonfinite, ..Output::new(color, tally) }
     }
 }
 
-/// Variance of each pixel's mean; 0 where there are too few samples for one.
+/// Takes the samples of all tiles, pass by pass, until cancelled.
+fn render_tiles(tiles: &mut [PathTile], inputs: &TileInputs, control: &Control) {
+    let passes = inputs.spp.div_ceil(PASS);
+    control.begin(Stage::Render, passes as u64 * tiles.len() as u64);
+    let batches = Workspaces::new(Batch::default);
+    for pass in 0..passes {
+        if control.is_cancelled() {
+            break;
+        }
+        let end = (pass * PASS).saturating_add(PASS).min(inputs.spp);
+        tiles.par_iter_mut().one_by_one().enumerate().for_each(|(i, tile)| {
+            if !control.is_cancelled() {
+                batches.with(|batch| tile.render(inputs, i, end, batch));
+                control.advance(1);
+            }
+        });
+    }
+}
+
+/// Images that tiles are put together to.
+struct TileImages {
+    color: Image,
+    squares: Image,
+    samples: Image<u32>,
+    guides: Option<PackedGuides>,
+}
+
+impl TileImages {
+    fn new(tiles: &[PathTile], view: &View, has_guides: bool) -> TileImages {
+        let window = &view.window;
+        let mut color = Image::new(window.width, window.height);
+        let mut squares = Image::new(window.width, window.height);
+        let mut samples = squares.map(|_| 0);
+        let mut guides = vec![PackedGuide::default(); if has_guides { color.pixels.len() } else { 0 }];
+        for (i, tile) in tiles.iter().enumerate() {
+            let indices = || window.tile(i, TILE).map(|[x, y]| (y * window.width + x) as usize);
+            for (pixel, at) in tile.pixels.iter().zip(indices()) {
+                color.pixels[at] = pixel.mean;
+                // Squares of radiances that f32 holds may overflow.
+                squares.pixels[at] = pixel.squares.min(Rgb::splat(f32::MAX));
+                samples.pixels[at] = tile.samples;
+            }
+            for (guide, at) in tile.guides.iter().zip(indices()) {
+                guides[at] = guide.kept(tile.samples);
+            }
+        }
+        TileImages { color, squares, samples, guides: has_guides.then_some(PackedGuides(guides)) }
+    }
+}
+
+/// Returns the variance of each pixel's mean; 0 if there are too few samples.
 fn variance(squares: &Image, samples: &Image<u32>) -> Image {
     let mut samples = samples.pixels.iter().map(|n| *n as f32);
     squares.map(|squares| match samples.next() {
@@ -158,108 +207,14 @@ fn variance(squares: &Image, samples: &Image<u32>) -> Image {
     })
 }
 
-/// Running mean and sum of squared differences of one pixel (Welford).
-#[derive(Clone, Copy, Default)]
-struct Pixel {
-    mean: Rgb,
-    squares: Rgb,
-}
-
-/// A tile's pixels and their counts.
-#[derive(Default)]
-struct Tile {
-    pixels: Vec<Pixel>,
-    /// Of the pixels, where they are wanted.
-    guides: Vec<Guide>,
-    samples: u32,
-    /// Paths traced in this run.
-    paths: u64,
-    counts: RayCounts,
-    nonfinite: u64,
-}
-
-impl Tile {
-    /// The tile as it was when a picture of `spp` samples was interrupted; `None` if that cannot have been.
-    fn of(begun: &Begun, view: &View, spp: u32, index: usize) -> Option<Tile> {
-        let (mut pixels, mut samples) = (Vec::new(), None);
-        for [x, y] in view.window.tile(index, TILE) {
-            let at = (y * view.window.width + x) as usize;
-            let [mean, squares] = [&begun.color, &begun.squares].map(|image| image.pixels.get(at).copied());
-            pixels.push(Pixel { mean: mean?, squares: squares? });
-            let own = *begun.samples.pixels.get(at)?;
-            if *samples.get_or_insert(own) != own {
-                return None;
-            }
-        }
-        let samples = samples.filter(|n| *n <= spp && (n % PASS == 0 || *n == spp))?;
-        Some(Tile { pixels, samples, ..Tile::default() })
-    }
-
-    /// Takes the samples up to `end` of every pixel of the tile of this index.
-    fn render(
-        &mut self,
-        (world, view): (&World, &View),
-        settings: &Settings,
-        (index, end): (usize, u32),
-        batch: &mut Batch,
-    ) {
-        let max_depth = world.scene.path_limit(settings.max_depth);
-        let begin = self.samples;
-        if begin >= end {
-            return;
-        }
-        // The film's own coordinates, so that a crop repeats the whole picture's pixels.
-        let film_pixels: Vec<[u32; 2]> =
-            view.window.tile(index, TILE).map(|at| view.window.film_pixel(at)).collect();
-        if self.pixels.is_empty() {
-            self.pixels = vec![Pixel::default(); film_pixels.len()];
-        }
-        let mut paths = FullPaths::default();
-        if settings.guides {
-            self.guides.resize(film_pixels.len(), Guide::default());
-            paths.first_surfaces = Some(FirstSurfaces::default());
-        }
-        for first in (begin..end).step_by(BATCH as usize) {
-            let samples = first..(first + BATCH).min(end);
-            let starts = film_pixels.iter().flat_map(|&pixel| {
-                samples.clone().map(move |sample| PathStart { pixel, sample, seed: settings.seed })
-            });
-            start(batch, starts, world, view, settings.estimand, settings.spp);
-            if let Some(first) = &mut paths.first_surfaces {
-                first.begin(film_pixels.len(), samples.len() as u32);
-            }
-            let mut values = batch.trace(world, max_depth, &mut paths, &mut self.counts);
-            if let Some(first) = &mut paths.first_surfaces {
-                let (spp, seed) = (settings.spp, settings.seed);
-                let features = FeatureSettings { estimand: Estimand::Pixels, spp, seed };
-                first.finish(world, view, features, &film_pixels, samples.start);
-                self.guides.iter_mut().enumerate().for_each(|(i, guide)| guide.add(first.of(i)));
-            }
-            for pixel in &mut self.pixels {
-                for (sample, mut value) in samples.clone().zip(values.by_ref()) {
-                    if !value.is_finite() {
-                        self.nonfinite += 1;
-                        value = Rgb::ZERO;
-                    }
-                    let difference = value - pixel.mean;
-                    pixel.mean += difference / (sample + 1) as f32;
-                    pixel.squares += difference * (value - pixel.mean);
-                }
-            }
-        }
-        self.paths += u64::from(end - begin) * self.pixels.len() as u64;
-        self.samples = end;
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use transport::eye::{Feature, Features, SeenPixels};
+    use transport::eye::{Feature, FeatureSettings, Features, SeenPixels};
     use world::testkit::*;
 
     #[test]
-    fn guides_are_the_features_of_all_paths_and_change_none() {
+    fn guides_are_the_features_of_all_paths_and_do_not_change_the_image() {
         let world = room_with_ball(Some(mirror()));
         let (view, control) = (&world.view, &Control::new());
         let plain = Settings { spp: 18, seed: 3, ..Settings::default() };
@@ -269,7 +224,7 @@ mod tests {
         let (expected, found) = (render(&plain), render(&guided));
         assert_eq!(found.color, expected.color);
         assert!(expected.guides.is_empty());
-        let settings = FeatureSettings { estimand: plain.estimand(), spp: plain.spp, seed: plain.seed };
+        let settings = FeatureSettings { estimand: plain.estimand, spp: plain.spp, seed: plain.seed };
         let wanted = Features::default().with(Feature::Albedo).with(Feature::Normal);
         let features = SeenPixels::new(&world, view, &settings, control).layers(&world, wanted);
         for (feature, guide) in features.iter().zip(&found.guides) {
@@ -280,11 +235,11 @@ mod tests {
             assert!(error < 1e-4, "{error}");
         }
         assert_eq!(found.guides.len(), 2);
-        // Samples that were taken before have none.
+        // Earlier samples have no guides.
         let (color, squares, samples) =
             (expected.color.clone(), expected.color.clone(), expected.color.map(|_| 16));
-        let begun = Begun { color, squares, samples, nonfinite: 0, seconds: 0.0 };
-        let rest = guided.render_rest(&world, &LightStore::default(), &begun, view, control);
+        let partial = PartialImage { color, squares, samples, nonfinite: 0, seconds: 0.0 };
+        let rest = guided.render_rest(&world, &partial, view, control);
         assert!(rest.complete && rest.guides.is_empty());
         assert!(render(&Settings { max_depth: Some(1), ..guided }).guides.is_empty());
     }

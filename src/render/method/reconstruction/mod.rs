@@ -4,12 +4,11 @@
 //! Paper: Walter et al. 2005, *Lightcuts: A Scalable Approach to Illumination*, section 5; see
 //! [`transport::lightcut::ReconstructionCut`], also for its deviations.
 //!
-//! Use it for pictures without noise that are not to be denoised: against records of both layers of light
-//! ([`super::cache`]) it takes as long and errs less, most of all where shadows are fine. The patch's cut
-//! corresponds to a record, a linear fit to its gradient, and rays correct it where the sixteen disagree. Light that
-//! reaches visible surfaces through glass or by mirrors is found as in [`super::lightcuts`], with noise.
+//! Use it for images without noise that are not to be denoised. Compared with records of both layers of light
+//! ([`super::cache`]) it takes as long and errs less, above all at fine shadows. The patch's cut corresponds to a
+//! record, and a linear fit to its gradient. Further rays correct the fit if the sixteen samples disagree. Light that
+//! reaches visible surfaces through glass or over mirrors is found as in [`super::lightcuts`], with noise.
 
 mod render;
-mod settings;
 
-pub use settings::Settings;
+pub use render::Settings;

@@ -1,54 +1,113 @@
-//! The lighting of the picture: patches of shading points.
+//! The image: eye pass, light pass, trees, and cuts that patches of shading points share.
 
-use super::Settings;
-use crate::method::{Output, Prepared, counts};
+use crate::method::Output;
+use crate::method::lights::LightStore;
+use crate::method::prepared::{Preparation, Prepared};
+use crate::method::renderer::Renderer;
+use crate::method::sampling::{HasSampling, method_settings};
+use crate::method::scale::{CUTS, Demand, Move, ScaledSetting, Scales};
+use base::film::Window;
 use base::progress::Control;
-use base::stats::{Stage, StageTime, Stopwatch};
-use transport::shade::{ShadedImage, ShadingContext, ShadingTask, patches, shade};
+use base::setting::{COMPENSATION, PATCHES, SHARE, Value};
+use base::stats::Stage;
+use transport::eye::EyePass;
+use transport::lightcut::CutSettings;
+use transport::lights::{Family, LightPassSettings};
+use transport::radiance_cache::CacheSettings;
+use transport::shade::{ShadeSettings, ShadedImage, ShadingContext, ShadingTask};
 use world::World;
+use world::shadow::ShadowSettings;
+use world::view::View;
 
-/// Minimum number of patches for an estimate of the time of all.
-const MIN_TRIED: usize = 32;
-
-/// Time that shading would take, tried on one patch in `every`, or on more where those would be few.
-pub fn lighting_time(settings: &Settings, world: &World, prepared: &Prepared, every: usize) -> StageTime {
-    let points = &prepared.eye.points;
-    let watch = Stopwatch::start();
-    let patches = patches(points, &tasks(prepared), settings.patches, world.diagonal);
-    let mut time = watch.elapsed();
-    let every = every.min(patches.len() / MIN_TRIED).max(1);
-    let some: Vec<Vec<ShadingTask>> = patches.iter().skip(every / 2).step_by(every).cloned().collect();
-    let context = ShadingContext::new(world, &prepared.lights, settings.compensation);
-    let watch = Stopwatch::start();
-    shade(&context, points, &some, &settings.shading(), &Control::new());
-    let count = |patches: &[Vec<ShadingTask>]| patches.iter().map(Vec::len).sum::<usize>() as f64;
-    let share = count(&patches) / count(&some).max(1.0);
-    let StageTime { wall_seconds, cpu_seconds } = watch.elapsed();
-    time += StageTime { wall_seconds: wall_seconds * share, cpu_seconds: cpu_seconds * share };
-    time
+method_settings! {
+    /// Settings of the method.
+    spp = 4, "Lightcuts" {
+        /// Numbers of VPLs; their seed is not used.
+        light: LightPassSettings = LightPassSettings::default() => [group];
+        /// Accuracy of the cut of an eye sample.
+        cut: CutSettings = CutSettings::default() => [group];
+        /// Compensation by short rays for light lost to clamping.
+        compensation: bool = true => [is COMPENSATION];
+        /// Builder of the light trees.
+        family: Family = Family::default() => [group];
+        /// Approximate number of patches of eye samples. The cost of cuts is proportional to it, whatever the
+        /// resolution.
+        patches: u32 = CacheSettings::default().patches => [is PATCHES];
+        /// Sharing of cuts between neighbours. If off, each sample has its own, whatever `patches` says.
+        share: bool = true => [is SHARE];
+        /// Use of the occluder cache by shadow rays of cuts.
+        shadows: ShadowSettings = ShadowSettings::default() => [group];
+    }
 }
 
-/// The picture, lit.
-pub fn light(settings: &Settings, world: &World, prepared: Prepared, control: &Control) -> Output {
-    let tasks = tasks(&prepared);
-    let Prepared { eye, lights, mut stats } = prepared;
-    control.begin(Stage::Render, tasks.len() as u64);
-    let context = ShadingContext::new(world, &lights, settings.compensation);
-    let mut picture = ShadedImage::new(&eye, false);
-    let counts = stats.time(Stage::Render, || {
-        picture.shade(&context, &eye, &tasks, settings.patches, &settings.shading(), control)
-    });
-    picture.came_by("cuts");
-    stats.count("Shading/tasks by cuts", tasks.len() as u64);
-    counts::cuts(&mut stats, "Lightcut", &counts.cuts);
-    counts::clamping(&mut stats, &counts.cuts, settings.compensation.then_some(&counts.compensation));
-    counts.shadows.report(&mut stats);
-    let complete = eye.complete && !control.is_cancelled();
-    let (color, extra, nonfinite) = picture.finish(&mut stats);
-    Output { extra, complete, nonfinite, ..Output::new(color, stats) }
+impl Renderer for Settings {
+    fn name(&self) -> &'static str {
+        "reconstruction"
+    }
+
+    fn about(&self) -> &'static str {
+        "Reconstruction cuts: a few eye samples of each patch share a lightcut, from which the others are lit"
+    }
+
+    fn render(&self, world: &World, lights: &LightStore, view: &View, control: &Control) -> Output {
+        let preparation = Preparation {
+            sampling: self.sampling(),
+            direct: None,
+            lights: self.light,
+            family: self.family,
+            for_view: true,
+        };
+        let Prepared { eye, lights, mut tally } = Prepared::new(world, lights, view, &preparation, control);
+        let tasks: Vec<ShadingTask> = (0..eye.len() as u32).map(ShadingTask::all).collect();
+        control.begin(Stage::Render, tasks.len() as u64);
+        let context = ShadingContext::new(world, &lights, self.compensation);
+        let shading =
+            ShadeSettings { cut: self.cut, share: self.share, samples: None, shadows: self.shadows };
+        let mut image = ShadedImage::new(&eye, false);
+        let counts = tally
+            .time(Stage::Render, || image.shade(&context, &eye, &tasks, self.patches, &shading, control));
+        image.came_by("cuts");
+        tally.count("Shading/tasks by cuts", tasks.len() as u64);
+        tally.cuts("Lightcut", &counts.cuts);
+        tally.clamping(&counts.cuts, self.compensation.then_some(&counts.compensation));
+        counts.shadows.report(&mut tally.stats);
+        let complete = eye.complete && !control.is_cancelled();
+        let (color, extra, nonfinite) = image.finish(&mut tally.stats);
+        Output { extra, complete, nonfinite, ..Output::new(color, tally) }
+    }
+
+    fn expected_bytes(&self, window: &Window) -> u64 {
+        let lights = self.light.expected_bytes();
+        EyePass::expected_bytes(window, self.spp.into()).saturating_add(lights)
+    }
+
+    fn as_scales(&self) -> Option<&dyn Scales> {
+        Some(self)
+    }
+
+    fn as_scales_mut(&mut self) -> Option<&mut dyn Scales> {
+        Some(self)
+    }
 }
 
-/// All light of all shading points.
-fn tasks(prepared: &Prepared) -> Vec<ShadingTask> {
-    (0..prepared.eye.len() as u32).map(ShadingTask::all).collect()
+impl Scales for Settings {
+    fn moves(&self) -> &'static [Move] {
+        &CUTS
+    }
+
+    fn scaled(&mut self, setting: ScaledSetting) -> Option<&mut dyn Value> {
+        Some(match setting {
+            ScaledSetting::Spp => &mut self.spp,
+            ScaledSetting::Epsilon => &mut self.cut.epsilon,
+            ScaledSetting::MaxCut => &mut self.cut.max_cut,
+            ScaledSetting::Vpls => &mut self.light.indirect,
+            ScaledSetting::Patches => &mut self.patches,
+            ScaledSetting::RecordEpsilon => return None,
+        })
+    }
+
+    fn demand(&self) -> Demand {
+        let LightPassSettings { direct, indirect, .. } = self.light;
+        Demand { direct_vpls: direct, vpls: indirect, extra_samples: 0.0, shares_patches: true }
+    }
 }

@@ -14,7 +14,7 @@ mod topology;
 
 use crate::lights::{Origin, Profiles, Vpl, VplSet};
 use base::progress::Control;
-use base::setting::{Each, Settings, Spec, choices};
+use base::setting::{Each, PAPER, Settings, Spec, choices};
 use cost::Primitive;
 use finish::Finisher;
 use rayon::prelude::*;
@@ -33,7 +33,7 @@ choices! {
 
 /// Declaration of the setting.
 static TREE: Spec =
-    Spec::new("tree", "Builder of the light trees", "Lightcuts").values(&["agglomerative", "divisive"]);
+    Spec::new("tree", "Builder of the light trees", PAPER).values(&["agglomerative", "divisive"]);
 
 impl Settings for Family {
     fn each(&mut self, each: Each) {

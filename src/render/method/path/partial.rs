@@ -1,19 +1,18 @@
-//! A picture that was interrupted: the samples that its pixels have, from which it goes on to the bits of one that was
-//! not.
+//! An interrupted image, from which the method resumes to the bits of an image that was not interrupted.
 
 use base::film::{ExrFile, Image, Layer, SAMPLES};
 
 /// Layer of the sums of squared differences from the means.
 const SQUARES: &str = "squares";
 
-/// The samples that an interrupted picture has.
+/// Samples of an interrupted image.
 #[derive(Clone, Debug)]
-pub struct Begun {
-    /// Mean radiance by pixel.
+pub struct PartialImage {
+    /// Mean radiance per pixel.
     pub color: Image,
-    /// Sum of squared differences from it.
+    /// Sum of squared differences from the mean, per pixel.
     pub squares: Image,
-    /// Number of samples.
+    /// Number of samples per pixel.
     pub samples: Image<u32>,
     /// Samples that were not finite and count as 0.
     pub nonfinite: u64,
@@ -21,12 +20,12 @@ pub struct Begun {
     pub seconds: f64,
 }
 
-impl Begun {
-    /// The samples that a file has of a picture; `None` if it is none that can go on.
-    pub fn of(file: &ExrFile) -> Option<Begun> {
+impl PartialImage {
+    /// Reads the samples of an image file; `None` if the file cannot be resumed.
+    pub fn of(file: &ExrFile) -> Option<PartialImage> {
         let facts = file.metadata();
         let number = |key| facts.number(key).unwrap_or_default();
-        Some(Begun {
+        Some(PartialImage {
             color: file.color().ok()?,
             squares: file.layer(SQUARES).ok()?,
             samples: file.numbers(SAMPLES)?,
@@ -35,12 +34,12 @@ impl Begun {
         })
     }
 
-    /// Takes the sums of squares out of a file.
+    /// Removes the sums of squares from a file.
     pub fn remove_squares(file: &mut ExrFile) {
         file.remove_layer(SQUARES);
     }
 
-    /// The layers of an interrupted picture from which it goes on, besides its colour.
+    /// Returns the layers from which an interrupted image is resumed, besides its colour.
     pub fn layers(squares: Image, samples: Image<u32>) -> Vec<Layer> {
         vec![Layer::color(SQUARES, squares), Layer::id(SAMPLES, samples)]
     }

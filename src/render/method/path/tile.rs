@@ -1,0 +1,133 @@
+//! A tile of the image, sampled in passes.
+
+use super::partial::PartialImage;
+use base::math::Rgb;
+use transport::eye::{FeatureSettings, FirstSurfaces, FullPaths, Guide};
+use transport::paths::{Batch, Estimand, PathStart, RayCounts, start};
+use world::World;
+use world::view::View;
+
+/// Side of a tile in pixels.
+pub const TILE: u32 = 16;
+
+/// Samples per pixel of a pass. A cancelled render keeps complete passes of each tile.
+pub const PASS: u32 = 16;
+
+/// Samples per pixel that are traced together: enough to fill packets, few enough for the second-level cache.
+const BATCH: u32 = 4;
+
+/// Running mean and sum of squared differences of one pixel (Welford).
+#[derive(Clone, Copy, Default)]
+pub struct RunningMean {
+    /// Mean radiance.
+    pub mean: Rgb,
+    /// Sum of squared differences from the mean.
+    pub squares: Rgb,
+}
+
+/// Inputs shared by all tiles.
+pub struct TileInputs<'a> {
+    /// The scene.
+    pub world: &'a World,
+    /// The camera and the window.
+    pub view: &'a View,
+    /// Quantity that a pixel estimates.
+    pub estimand: Estimand,
+    /// Samples per pixel of the complete image.
+    pub spp: u32,
+    /// Random seed.
+    pub seed: u32,
+    /// Maximum path length in edges.
+    pub max_depth: u32,
+    /// True if a denoiser's guides are wanted.
+    pub guides: bool,
+}
+
+/// Pixels of a tile and their counts.
+#[derive(Default)]
+pub struct PathTile {
+    /// Pixels of the tile, row by row; empty before the first pass.
+    pub pixels: Vec<RunningMean>,
+    /// Guides by pixel, if they are wanted.
+    pub guides: Vec<Guide>,
+    /// Samples per pixel.
+    pub samples: u32,
+    /// Paths traced in this run.
+    pub paths: u64,
+    /// Rays traced in this run.
+    pub counts: RayCounts,
+    /// Radiances that were not finite and count as 0.
+    pub nonfinite: u64,
+}
+
+impl PathTile {
+    /// Restores a tile of an interrupted image of `spp` samples; `None` if no pass ends at its samples.
+    pub fn of(partial: &PartialImage, view: &View, spp: u32, index: usize) -> Option<PathTile> {
+        let (mut pixels, mut samples) = (Vec::new(), None);
+        for [x, y] in view.window.tile(index, TILE) {
+            let at = (y * view.window.width + x) as usize;
+            let [mean, squares] =
+                [&partial.color, &partial.squares].map(|image| image.pixels.get(at).copied());
+            pixels.push(RunningMean { mean: mean?, squares: squares? });
+            let own = *partial.samples.pixels.get(at)?;
+            if *samples.get_or_insert(own) != own {
+                return None;
+            }
+        }
+        let samples = samples.filter(|n| *n <= spp && (n % PASS == 0 || *n == spp))?;
+        Some(PathTile { pixels, samples, ..PathTile::default() })
+    }
+
+    /// Takes all samples up to `end` of every pixel of the tile of this index.
+    pub fn render(&mut self, inputs: &TileInputs, index: usize, end: u32, batch: &mut Batch) {
+        let TileInputs { world, view, estimand, spp, seed, max_depth, guides } = *inputs;
+        let begin = self.samples;
+        if begin >= end {
+            return;
+        }
+        // Film coordinates, so that a crop has the pixels of the full image.
+        let film_pixels: Vec<[u32; 2]> =
+            view.window.tile(index, TILE).map(|at| view.window.film_pixel(at)).collect();
+        if self.pixels.is_empty() {
+            self.pixels = vec![RunningMean::default(); film_pixels.len()];
+        }
+        let mut paths = FullPaths::default();
+        if guides {
+            self.guides.resize(film_pixels.len(), Guide::default());
+            paths.first_surfaces = Some(FirstSurfaces::default());
+        }
+        for first in (begin..end).step_by(BATCH as usize) {
+            let samples = first..(first + BATCH).min(end);
+            let starts = film_pixels
+                .iter()
+                .flat_map(|&pixel| samples.clone().map(move |sample| PathStart { pixel, sample, seed }));
+            start(batch, starts, world, view, estimand, spp);
+            if let Some(first) = &mut paths.first_surfaces {
+                first.begin(film_pixels.len(), samples.len() as u32);
+            }
+            let mut values = batch.trace(world, max_depth, &mut paths, &mut self.counts);
+            if let Some(first) = &mut paths.first_surfaces {
+                let features = FeatureSettings { estimand: Estimand::Pixels, spp, seed };
+                first.finish(world, view, features, &film_pixels, samples.start);
+                self.guides.iter_mut().enumerate().for_each(|(i, guide)| guide.add(first.of(i)));
+            }
+            for pixel in &mut self.pixels {
+                for (sample, value) in samples.clone().zip(values.by_ref()) {
+                    self.nonfinite += u64::from(!value.is_finite());
+                    pixel.add(sample, if value.is_finite() { value } else { Rgb::ZERO });
+                }
+            }
+        }
+        self.paths += u64::from(end - begin) * self.pixels.len() as u64;
+        self.samples = end;
+    }
+}
+
+impl RunningMean {
+    /// Adds the sample of this index.
+    fn add(&mut self, sample: u32, value: Rgb) {
+        let difference = value - self.mean;
+        self.mean += difference / (sample + 1) as f32;
+        self.squares += difference * (value - self.mean);
+    }
+}
