@@ -37,8 +37,8 @@ impl Lack {
     /// Returns a bound of the lacking light, up to a constant factor: for a diffuse surface, max(0, 1 - b/G); for a
     /// lobe, its maximum.
     pub fn weight(&self) -> f32 {
-        let most = if self.by_lobes { MAX_LOBE } else { 1.0 };
-        (1.0 - self.kept / most).max(0.0)
+        let max = if self.by_lobes { MAX_LOBE } else { 1.0 };
+        (1.0 - self.kept / max).max(0.0)
     }
 }
 

@@ -186,8 +186,8 @@ impl Compensator {
         }
         let cut = self.packet.gather(&c.transfer, c.world, &self.receivers, &settings);
         for (lane, ((_, irradiance), near)) in places.iter_mut().zip(&of_places).enumerate() {
-            let found = limited(c, &cut, near, lane, baseline);
-            *irradiance = if found.is_finite() { found } else { Rgb::ZERO };
+            let gathered = limited(c, &cut, near, lane, baseline);
+            *irradiance = if gathered.is_finite() { gathered } else { Rgb::ZERO };
         }
         places
     }
@@ -199,15 +199,15 @@ impl Compensator {
         receivers: &ReceiverPacket,
         sum: &mut PacketSum,
     ) {
-        let least = 1e-6 * c.world.diagonal;
+        let min_distance = 1e-6 * c.world.diagonal;
         for (lane, near) in &self.met {
             let r = receivers.get(*lane);
             let passed = r.coat_transmittance(near.surface.position - r.position());
-            let reflected = near.weight * light.interpolated(near, least * least);
+            let reflected = near.weight * light.interpolated(near, min_distance * min_distance);
             let factor = r.base_brdf() * (passed * PI / RAYS as f32);
-            let found = factor * (reflected + near.emitted);
-            if found.is_finite() {
-                sum.radiance[*lane] += found;
+            let added = factor * (reflected + near.emitted);
+            if added.is_finite() {
+                sum.radiance[*lane] += added;
                 self.counts.found += f64::from(luminance(factor * reflected));
             }
         }
@@ -217,13 +217,13 @@ impl Compensator {
 impl NearLight {
     /// Returns the mean irradiance of the places, weighted towards near places of similar orientation. Places that face
     /// the other way, which may be on the other side of a wall, count as dark.
-    fn interpolated(&self, near: &NearSurface, least_sq: f32) -> Rgb {
+    fn interpolated(&self, near: &NearSurface, min_sq: f32) -> Rgb {
         let (mut sum, mut weights) = (Rgb::ZERO, 0.0);
         for (place, irradiance) in &self.places {
             let cos = place.normal.dot(near.normal);
             let facing = cos.max(0.0);
             let dist_sq = place.position.distance_squared(near.surface.position);
-            let weight = (ASIDE + facing * facing) / (dist_sq + least_sq);
+            let weight = (ASIDE + facing * facing) / (dist_sq + min_sq);
             sum += if cos > OPPOSITE { *irradiance * weight } else { Rgb::ZERO };
             weights += weight;
         }
@@ -239,13 +239,13 @@ fn limited(c: &Compensation, cut: &PacketCut, near: &NearSurface, lane: usize, b
         let given = cut.clusters.iter().enumerate().map(|(i, cluster)| {
             let node = &c.transfer.trees.nodes[cluster.node as usize];
             let given = node.intensity * cluster.responses.get(lane);
-            let most = match node.origin() {
+            let max = match node.origin() {
                 Origin::Direct => f32::INFINITY,
                 Origin::Indirect if node.is_leaf() => cut.sum.limits[lane].min(limit),
                 Origin::Indirect => limit,
             };
             let y = luminance(given);
-            let given = if y > most { given * (most / y) } else { given };
+            let given = if y > max { given * (max / y) } else { given };
             factors.as_ref().map_or(given, |factors| given * factors[i])
         });
         given.sum::<Rgb>()

@@ -128,8 +128,8 @@ fn weighed(
     if lit_sq > dist_sq {
         near.emitted = world.emitted(&surface, -direction) * (1.0 - dist_sq / lit_sq);
     }
-    let most = near.weight + near.emitted;
-    (luminance(most) > 0.0 && most.is_finite()).then_some(near)
+    let light = near.weight + near.emitted;
+    (luminance(light) > 0.0 && light.is_finite()).then_some(near)
 }
 
 #[cfg(test)]

@@ -38,11 +38,11 @@ pub fn levels(photons: &[CausticPhoton], unit: impl Fn(&CausticPhoton) -> f32) -
         let radius = photon.radius / unit(photon);
         let level = (0..LEVELS - 1).find(|level| radius <= scale(*level)).unwrap_or(LEVELS - 1);
         let crowd = (scale(level) / radius).powi(2);
-        let kept = if level == 0 { (MAX_CROWD / crowd).min(1.0) } else { 1.0 };
-        if kept < 1.0 && hash(number, 0x7417) as f32 >= kept * 4_294_967_296.0 {
+        let probability = if level == 0 { (MAX_CROWD / crowd).min(1.0) } else { 1.0 };
+        if probability < 1.0 && hash(number, 0x7417) as f32 >= probability * 4_294_967_296.0 {
             continue;
         }
-        by_level[level].push(CausticPhoton { flux: photon.flux / kept, ..*photon });
+        by_level[level].push(CausticPhoton { flux: photon.flux / probability, ..*photon });
     }
     let levels = by_level.into_iter().enumerate().filter(|(_, photons)| !photons.is_empty());
     levels.map(|(level, photons)| DiscLevel::new(&photons, scale(level))).collect()

@@ -70,15 +70,15 @@ impl<'w> PhotonEmitter<'w> {
     ) -> Option<EmissionSample> {
         let emitters = &self.world.emitters;
         if let Some(light) = emitters.areas.get(index) {
-            return self.from_area(light, inv_probability, numbers);
+            return self.begin_at_area(light, inv_probability, numbers);
         }
         match emitters.deltas.get(index - emitters.areas.len()) {
-            Some(light) => self.from_delta(light, inv_probability, numbers),
-            None => self.from_environment(emitters.environment.as_ref()?, inv_probability, numbers),
+            Some(light) => self.begin_at_delta(light, inv_probability, numbers),
+            None => self.begin_at_environment(emitters.environment.as_ref()?, inv_probability, numbers),
         }
     }
 
-    fn from_area(
+    fn begin_at_area(
         &self,
         light: &AreaLight,
         inv_probability: f32,
@@ -92,7 +92,7 @@ impl<'w> PhotonEmitter<'w> {
         EmissionSample::new(ray, flux, Some(luminance(radiance)))
     }
 
-    fn from_delta(
+    fn begin_at_delta(
         &self,
         light: &DeltaLight,
         inv_probability: f32,
@@ -136,7 +136,7 @@ impl<'w> PhotonEmitter<'w> {
         EmissionSample::new(ray, flux, None)
     }
 
-    fn from_environment(
+    fn begin_at_environment(
         &self,
         environment: &EnvironmentLight,
         inv_probability: f32,

@@ -29,11 +29,11 @@ pub fn direct_vpls(world: &World, settings: &LightPassSettings, control: &Contro
     let emitters = &world.emitters;
     let mut oriented = VplSet::new(VplKind::Oriented, Origin::Direct);
     let total_power: f64 = emitters.areas.iter().map(|a| f64::from(a.power)).sum();
-    let least = (MIN_OF_ALL / emitters.areas.len().max(1) as u32).clamp(1, MIN_PER_LIGHT);
+    let min_count = (MIN_OF_ALL / emitters.areas.len().max(1) as u32).clamp(1, MIN_PER_LIGHT);
     let mut sizes = vec![0; world.scene.meshes.len()];
     for (i, light) in emitters.areas.iter().enumerate() {
         let share = f64::from(light.power) / total_power;
-        let count = ((share * f64::from(settings.direct)).ceil() as u32).max(least);
+        let count = ((share * f64::from(settings.direct)).ceil() as u32).max(min_count);
         let size = size_of_area(light.area / count as f32, world.diagonal);
         sizes[light.mesh as usize] = size;
         let patches = Patches { count, size, seed: hash(settings.seed, 0x0a1e_a000 ^ i as u32) };

@@ -3,7 +3,7 @@
 use base::setting::{JudgedBy, settings};
 
 /// Factors on the numbers of VPLs that benchmarks try.
-const FEWER: [f64; 4] = [1.0 / 16.0, 0.25, 1.0, 4.0];
+const FACTORS: [f64; 4] = [1.0 / 16.0, 0.25, 1.0, 4.0];
 
 settings! {
     /// Numbers of VPLs to create.
@@ -12,11 +12,11 @@ settings! {
         ///
         /// Area lights share the number by power. Each has at least 256; fewer if there are more than 1024 lights.
         direct: u32 = 4096 => [
-            .named("direct_vpls").at_least(1.0).scaled(&FEWER).judged_by(JudgedBy::Light).with(&[("direct", "cuts")])
+            .named("direct_vpls").at_least(1.0).scaled(&FACTORS).judged_by(JudgedBy::Light).with(&[("direct", "cuts")])
         ];
         /// Approximate number of virtual point lights where light is reflected, at least those of 1024 paths. 0
         /// computes direct light only.
-        indirect: u32 = 300_000 => [.named("vpls").at_least(0.0).scaled(&FEWER).judged_by(JudgedBy::Light)];
+        indirect: u32 = 300_000 => [.named("vpls").at_least(0.0).scaled(&FACTORS).judged_by(JudgedBy::Light)];
         /// Seed of the VPLs.
         seed: u32 = 0;
     }

@@ -46,10 +46,12 @@ impl Transfer<'_> {
             _ if lit == 0 => {}
             Some(glossy) => {
                 let (cos_i_min, cos_mirror_max) = cluster.lobe16(receivers);
-                let most = glossy.bound(&DirectionBounds16 { cos_i_max: cos_x, cos_i_min, cos_mirror_max });
+                let reflection =
+                    glossy.bound(&DirectionBounds16 { cos_i_max: cos_x, cos_i_min, cos_mirror_max });
                 let w = i * LUMINANCE;
                 for l in 0..LANES {
-                    let reflected = (w.x * most.x[l] + w.y * most.y[l] + w.z * most.z[l]) * geometry[l];
+                    let reflected =
+                        (w.x * reflection.x[l] + w.y * reflection.y[l] + w.z * reflection.z[l]) * geometry[l];
                     bounds[l] = if receivers.general >> l & 1 != 0 { reflected } else { bounds[l] };
                 }
             }

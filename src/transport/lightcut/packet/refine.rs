@@ -126,8 +126,8 @@ impl<'a, 't, 'm, V: PacketVisibility> PacketRefinement<'a, 't, 'm, V> {
         let largest = halved(thresholds, |a, b| if b > a { b } else { a });
         self.min_total = (largest / MAX_ERROR).max(f32::MIN_POSITIVE);
         self.room = self.room.saturating_sub(self.cut.clusters.len());
-        let least = self.min_total;
-        thresholds.map(|threshold| if threshold > least { threshold } else { least })
+        let min = self.min_total;
+        thresholds.map(|threshold| if threshold > min { threshold } else { min })
     }
 
     fn count(&mut self, judgement: &Judgement) {
@@ -196,9 +196,9 @@ impl<'a, 't, 'm, V: PacketVisibility> PacketRefinement<'a, 't, 'm, V> {
             self.cut.counts.bounds += self.receivers.len() as u64;
             let mut errors = self.transfer.errors16(self.receivers, n);
             // As in a single point's cut, a cluster that gives more than a quarter of the total is split.
-            let least = self.settings.epsilon / DOMINANT;
+            let share = self.settings.epsilon / DOMINANT;
             for l in 0..LANES {
-                let doubt = least * counted[l];
+                let doubt = share * counted[l];
                 errors[l] = if doubt > errors[l] { doubt } else { errors[l] };
             }
             errors

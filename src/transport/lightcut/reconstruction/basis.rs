@@ -50,8 +50,8 @@ impl LinearBasis {
         lanes_in(anchors.valid).for_each(|l| one[l] = constant);
         let functions = axes.map(along);
         let ranges = functions.map(|f| {
-            let least = f.into_iter().fold(f32::INFINITY, f32::min);
-            [least, f.into_iter().fold(f32::NEG_INFINITY, f32::max)]
+            let low = f.into_iter().fold(f32::INFINITY, f32::min);
+            [low, f.into_iter().fold(f32::NEG_INFINITY, f32::max)]
         });
         let radius_sq = (0..anchors.len()).map(|l| at(l).distance_squared(centre)).fold(0.0, f32::max);
         let at_anchors = [one, functions[0], functions[1]];
@@ -66,8 +66,8 @@ impl LinearBasis {
             let offset = receivers.position.get(l) - self.centre;
             values[0][l] = self.constant;
             for (f, axis) in self.axes.iter().enumerate() {
-                let [least, most] = self.ranges[f];
-                values[f + 1][l] = offset.dot(*axis).clamp(least, most);
+                let [low, high] = self.ranges[f];
+                values[f + 1][l] = offset.dot(*axis).clamp(low, high);
             }
         }
         values

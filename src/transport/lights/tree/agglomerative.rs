@@ -108,23 +108,23 @@ fn nearest_neighbours(clusters: &[ActiveCluster], c_sq: f32) -> Vec<u32> {
 
 /// Merges clusters that chose each other, in place and in order.
 fn merge(clusters: &mut Vec<ActiveCluster>, nearest: &[u32], leaves: usize, pairs: &mut Vec<[u32; 2]>) {
-    let mut kept = 0;
+    let mut count = 0;
     for i in 0..clusters.len() {
         let j = nearest[i] as usize;
         let mutual = j < clusters.len() && nearest[j] as usize == i;
         if mutual && j < i {
             continue; // already merged, by its partner
         }
-        clusters[kept] = if mutual && j > i {
+        clusters[count] = if mutual && j > i {
             let id = (leaves + pairs.len()) as u32;
             pairs.push([clusters[i].id, clusters[j].id]);
             clusters[i].merged(&clusters[j], id)
         } else {
             clusters[i]
         };
-        kept += 1;
+        count += 1;
     }
-    clusters.truncate(kept);
+    clusters.truncate(count);
 }
 
 #[cfg(test)]

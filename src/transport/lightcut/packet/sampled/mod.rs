@@ -69,7 +69,7 @@ pub struct SampledCut {
     /// Importance of each cluster in each lane, as luminance.
     importance: Vec<F32x16>,
     /// Samples whose VPLs are visible, by lane.
-    found: [Vec<Sample>; LANES],
+    visible: [Vec<Sample>; LANES],
     /// Work done so far.
     pub counts: CutCounts,
 }
@@ -126,8 +126,8 @@ impl Samples {
             let wanted = self.whole * share;
             numbers[lane] = if wanted > self.least { wanted } else { self.least };
         }
-        let few = numbers.iter().sum::<f32>() <= MAX_SAMPLES * receivers.len() as f32;
-        (few && totals.iter().all(|total| total.is_finite())).then_some(numbers)
+        let is_cheap = numbers.iter().sum::<f32>() <= MAX_SAMPLES * receivers.len() as f32;
+        (is_cheap && totals.iter().all(|total| total.is_finite())).then_some(numbers)
     }
 }
 
@@ -154,7 +154,7 @@ impl SampledCut {
         self.counts.cuts += receivers.len() as u64;
         let mut cursors = [SampleCursor::default(); LANES];
         for lane in lanes_in(receivers.valid) {
-            self.found[lane].clear();
+            self.visible[lane].clear();
             let (step, seed) = (totals[lane] / numbers[lane], hash(seed, lane as u32));
             cursors[lane] =
                 SampleCursor { next: step * unit(hash(seed, 0)), step, seed, ..SampleCursor::default() };
@@ -216,26 +216,26 @@ impl SampledCut {
                     let factor = if is_weak(node) { density.recip() } else { f32::INFINITY };
                     let sample = Sample { light: response * (node.intensity / density), factor };
                     if pending.push(&ray, sample, lane) {
-                        pending.trace(visibility, &mut self.found, &mut self.counts);
+                        pending.trace(visibility, &mut self.visible, &mut self.counts);
                     }
                 }
             }
         }
-        pending.trace(visibility, &mut self.found, &mut self.counts);
+        pending.trace(visibility, &mut self.visible, &mut self.counts);
         self.counts.clusters += cursors.iter().map(|cursor| u64::from(cursor.number)).sum::<u64>();
     }
 
     /// Returns the sum of the visible samples of a lane, and the luminance to which weak singularities are limited: the
     /// share `clamp` of all light.
     fn clamped(&mut self, lane: usize, baseline: f32, clamp: Option<f32>) -> (Rgb, f32) {
-        let found = &self.found[lane];
+        let samples = &self.visible[lane];
         let is_limited = |sample: &Sample, limit: f32| luminance(sample.light) > limit * sample.factor;
         let limited = |limit: f32| -> Rgb {
             let limited = |sample: &Sample| match is_limited(sample, limit) {
                 true => sample.light * (limit * sample.factor / luminance(sample.light)),
                 false => sample.light,
             };
-            found.iter().map(limited).sum()
+            samples.iter().map(limited).sum()
         };
         let sum = limited(f32::INFINITY);
         let total = luminance(sum);
@@ -245,10 +245,10 @@ impl SampledCut {
             luminance(limited(DOMINANT * frozen)) + baseline
         });
         let limit = clamp * frozen;
-        let kept = limited(limit);
-        self.counts.clamped += found.iter().filter(|sample| is_limited(sample, limit)).count() as u64;
-        self.counts.lost += f64::from(total - luminance(kept));
-        (kept, limit)
+        let clamped = limited(limit);
+        self.counts.clamped += samples.iter().filter(|sample| is_limited(sample, limit)).count() as u64;
+        self.counts.lost += f64::from(total - luminance(clamped));
+        (clamped, limit)
     }
 }
 
@@ -268,7 +268,7 @@ impl Pending {
     fn trace<V: RayVisibility>(
         &mut self,
         visibility: &V,
-        found: &mut [Vec<Sample>; LANES],
+        visible: &mut [Vec<Sample>; LANES],
         counts: &mut CutCounts,
     ) {
         let count = std::mem::take(&mut self.count);
@@ -279,7 +279,7 @@ impl Pending {
         counts.packets += 1;
         for i in lanes_in(visibility.arriving16(&self.rays, count, &mut self.light)) {
             let sample = Sample { light: self.light.get(i), factor: self.factors[i] };
-            found[usize::from(self.points[i])].push(sample);
+            visible[usize::from(self.points[i])].push(sample);
         }
     }
 }
