@@ -152,11 +152,12 @@ mod tests {
         View { camera: Camera::default(), window: Window::whole([512, 512]) }
     }
 
-    /// Returns the time of a trial on a machine with so many seconds per eye sample at level 0.
-    fn timed(ladder: &Ladder, trial: &Trial, speed: f64) -> Timed {
+    /// Returns the time of a trial on a machine that agrees with the model.
+    fn timed(ladder: &Ladder, trial: &Trial) -> Timed {
         let size = size(&ladder.at(trial.level), &trial.view);
-        let rest = speed * size.samples * (0.5 * trial.level).exp();
-        Timed { level: trial.level, size, samples: size.samples, light: 0.1 * rest, eye: 0.1 * rest, rest }
+        let (light, eye) = (1e-7 * size.vpls, 1e-7 * size.samples);
+        let rest = 1e-5 * size.samples.powf(0.75) * (0.35 * trial.level).exp();
+        Timed { level: trial.level, size, samples: size.samples, light, eye, rest }
     }
 
     #[test]
@@ -168,10 +169,9 @@ mod tests {
             let mut left = seconds;
             while let Some(trial) = trials.next(left) {
                 assert!(trials.count() > 0 || trial.level == 0.0);
-                let timed = timed(&ladder, &trial, 1e-6);
+                let timed = timed(&ladder, &trial);
                 let time = timed.light + timed.eye + timed.rest;
-                // The model is not exact, but near.
-                assert!(trials.count() == 0 || time < 3.0 * PILOT_SHARE * left, "{seconds} {trial:?} {time}");
+                assert!(trials.count() == 0 || time < 1.1 * PILOT_SHARE * left, "{seconds} {trial:?} {time}");
                 left -= time;
                 trials.add(timed);
             }
