@@ -192,9 +192,9 @@ fn a_black_picture_is_warned_of_and_an_error_under_strict() {
     std::fs::write(sandbox.path("black.xml"), text).unwrap();
     let arguments = ["render", "black.xml", "-o", "a.exr", "--spp", "1", "--resolution", "4x4"];
     let warned = sandbox.run(&arguments).expect(0);
-    assert!(warned.stderr.contains("warning: the picture is black"), "{}", warned.stderr);
+    assert!(warned.stderr.contains("warning: the image is black"), "{}", warned.stderr);
     let strict = sandbox.run(&[&arguments[..], &["--strict"]].concat()).expect(1);
-    assert!(strict.stderr.contains("error: a.exr: the picture is black"), "{}", strict.stderr);
+    assert!(strict.stderr.contains("error: a.exr: the image is black"), "{}", strict.stderr);
     let dark = text.replace("<emitter type=\"area\"/>", "");
     std::fs::write(sandbox.path("black.xml"), dark).unwrap();
     let warned = sandbox.run(&arguments).expect(0);

@@ -150,7 +150,7 @@ fn wrong_names_ranges_and_scenes_are_errors_and_nothing_is_written() {
     let sandbox = sandbox();
     let error = |frames: &str, more: &[&str], code| walk(&sandbox, frames, more).expect(code).stderr;
     assert!(error("0-4", &[], 2).contains("count from 1"));
-    assert!(error("4-2", &[], 2).contains("holds no frame"));
+    assert!(error("4-2", &[], 2).contains("contains no frame"));
     assert!(error("a", &[], 2).contains("1-100x5"));
     let beyond = error("5-7", &[], 2);
     assert!(beyond.contains("no frame 7") && beyond.contains("has 6"), "{beyond}");

@@ -183,7 +183,7 @@ fn errors_measured_by_paths_come_with_a_warning_where_paths_seldom_find_the_ligh
                 return;
             }
             let warns =
-                |remark: &Remark| matches!(remark, Remark::Warning(text) if text.contains("seldom found"));
+                |remark: &Remark| matches!(remark, Remark::Warning(text) if text.contains("seldom find"));
             assert_eq!(frame.remarks.iter().any(warns), is_seldom && verify.is_some(), "{:?}", frame.remarks);
             let share = frame.facts["plan"]["seldom_found_by_paths"].as_f64().unwrap();
             assert_eq!(share > 0.3, is_seldom, "{share}");
