@@ -44,7 +44,7 @@ fn a_missing_library_is_a_warning_with_its_remedy_and_a_noisy_picture_that_says_
         &["--resolution", "24x16", "--denoise", "--keep-noisy", "--stats", "json"],
     );
     let run = without_library(&sandbox, &render).expect(0);
-    for part in ["warning: the picture is not denoised", "OIDN_DIR=", "make setup"] {
+    for part in ["warning: the image is not denoised", "OIDN_DIR=", "make setup"] {
         assert!(run.stderr.contains(part), "{}", run.stderr);
     }
     let report: serde_json::Value = serde_json::from_str(&run.stdout).unwrap();
