@@ -1,6 +1,6 @@
 //! Studies render missing pictures, store them, and write the same results in three formats.
 
-use super::Sandbox;
+use super::{Finished, Sandbox};
 use serde_json::Value;
 use std::fs;
 use std::path::Path;
@@ -16,20 +16,22 @@ fn json(path: &Path) -> Value {
     serde_json::from_str(&fs::read_to_string(path).unwrap()).unwrap()
 }
 
-#[test]
-fn the_table_covers_all_methods_and_renders_nothing_twice() {
-    let sandbox = Sandbox::new();
-    // The room with a path as long as the table's walk.
+/// The table of some scenes, first of them `path.toml`, in a sandbox.
+fn table(sandbox: &Sandbox, scenes: &[&str], reference_spp: &str) -> Finished {
+    // The room with a path as long as the walk of the table.
     fs::write(sandbox.path("path.toml"), super::walk::PATH.replace("frame = 6", "frame = 24")).unwrap();
-    let run = |more: &[&str]| {
-        let base = ["bench", "table1", "path.toml", "knot", "--scenes", SCENES, "-o", "study"];
-        let size = ["--resolution", "64x64", "--threads", "2"];
-        sandbox.run(&[&base, &size[..], more].concat()).expect(0)
-    };
-    let first = run(&["--reference-spp", "8"]);
+    let common = ["--scenes", SCENES, "-o", "study", "--resolution", "64x64", "--threads", "2"];
+    let reference = ["--reference-spp", reference_spp];
+    sandbox.run(&[&["bench", "table1"], scenes, &common[..], &reference].concat()).expect(0)
+}
+
+/// Asserts that the table has a row for each method, and that a second run renders nothing.
+fn assert_table_covers_all_methods(sandbox: &Sandbox, names: &[&str]) {
+    let run = || table(sandbox, names, "8");
+    let first = run();
     let table = json(&sandbox.path("study/table1.json"));
     let scenes = table["scenes"].as_array().unwrap();
-    assert_eq!(scenes.len(), 2);
+    assert_eq!(scenes.len(), names.len());
     let mut pictures = 0;
     for scene in scenes {
         assert_eq!(scene["reference"]["spp"], 8);
@@ -69,16 +71,27 @@ fn the_table_covers_all_methods_and_renders_nothing_twice() {
     assert!(html.contains("<svg") && html.contains("data:image/png") && !html.contains("http"));
     assert_eq!(fs::read_to_string(sandbox.path("study/table1.md")).unwrap(), first.stdout);
 
-    let again = run(&["--reference-spp", "8"]);
+    let again = run();
     assert_eq!(rendered(&again.stderr), [""; 0]);
     assert_eq!(again.stdout, first.stdout);
+}
 
+#[test]
+fn the_table_covers_all_methods_and_renders_nothing_twice() {
+    assert_table_covers_all_methods(&Sandbox::new(), &["path.toml"]);
+}
+
+#[test]
+#[ignore = "a study: two scenes, lost images and longer references"]
+fn the_table_renders_what_was_lost_and_adds_to_references() {
+    let (sandbox, names) = (Sandbox::new(), ["path.toml", "knot"]);
+    assert_table_covers_all_methods(&sandbox, &names);
     // Lost pictures are rendered again, and references grow by the missing rounds.
     let folder = sandbox.path("study/pictures");
     let lost = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
     let lost = lost.filter(|path| path.to_str().unwrap().contains("knot--photon-cache"));
     lost.for_each(|path| fs::remove_file(path).unwrap());
-    let more = run(&["--reference-spp", "16"]);
+    let more = table(&sandbox, &names, "16");
     let lines = rendered(&more.stderr);
     let count = |what: &str| lines.iter().filter(|line| line.contains(what)).count();
     assert_eq!((count("reference"), count("photon-cache"), lines.len()), (4, 4, 8), "{lines:?}");

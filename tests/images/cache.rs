@@ -158,7 +158,7 @@ fn assert_reconstruction_agrees(world: &WorldAndView, seeds: u32, spp: u32) {
 #[test]
 fn reconstruction_cuts_agree_with_lightcuts_per_pixel() {
     for world in [lit_room(), glossy_room()] {
-        assert_reconstruction_agrees(&world, 2, 1);
+        assert_reconstruction_agrees(&world, 4, 1);
     }
 }
 

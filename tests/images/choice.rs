@@ -163,7 +163,7 @@ fn scenes_are_left_to_the_method_that_suits_them() {
 
 #[test]
 fn without_denoising_there_is_no_choice() {
-    let (session, mut view) = session(gloss());
+    let (session, mut view) = session(indirect());
     crop(&mut view);
     let goal = Goal { may_choose: true, denoise: Some(false), ..Goal::default() };
     let frame = session.frame(&view, &goal, &Control::new()).unwrap();

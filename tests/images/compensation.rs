@@ -77,7 +77,7 @@ fn creases_are_as_bright_as_paths_make_them() {
 /// Compares surfaces so close to a lamp that one virtual light would outshine all others with path tracing.
 #[test]
 fn surfaces_beside_lamps_are_as_bright_as_paths_make_them() {
-    let mut scene = scene(camera(Vec3::new(0.0, 0.0, 0.3), Vec3::new(0.0, 0.0, -0.9), 1.0), [SIZE, SIZE]);
+    let mut scene = scene(camera(Vec3::new(0.0, 0.0, 0.3), Vec3::new(0.0, 0.0, -0.9), 1.0), [96, 96]);
     let wall = add_material(&mut scene, diffuse(Rgb::splat(0.5)));
     scene.meshes.extend(room(Vec3::splat(-1.0), Vec3::ONE, wall));
     // A window that meets four walls.

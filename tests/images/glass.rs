@@ -149,8 +149,9 @@ fn worlds() -> [(WorldAndView, &'static str); 6] {
 }
 
 #[test]
-fn light_comes_through_panes_and_bulbs_and_over_mirrors() {
-    for (world, what) in &worlds() {
+fn light_comes_through_panes_and_bulbs() {
+    let [_, solid_pane, _, curtain, bulb, _] = worlds();
+    for (world, what) in &[solid_pane, curtain, bulb] {
         assert_means_within(NOISE, by_default(world), by_paths(world), what);
     }
 }
@@ -294,6 +295,7 @@ fn all_methods_agree_behind_a_thin_pane() {
 #[ignore = "a study: all methods behind all kinds of panes and mirrors"]
 fn all_methods_agree_behind_panes_and_mirrors() {
     for (world, what) in &worlds() {
+        assert_means_within(NOISE, by_default(world), by_paths(world), what);
         assert_methods_agree(world, 128, what);
     }
 }

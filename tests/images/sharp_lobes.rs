@@ -9,7 +9,7 @@ use lightsplat::method::{lightcuts, path};
 use lightsplat::scene::{Distribution, Environment, Fresnel, Lobe, Material, Reflectance};
 
 /// Side of the film in pixels.
-const SIZE: u32 = 32;
+const SIZE: u32 = 48;
 
 /// A rough mirror below two lamps, one small and one that fills much of the lobe, half hidden by a sheet.
 fn below_lamps() -> SceneAndView {
@@ -43,7 +43,7 @@ fn by_cuts(world: &WorldAndView) -> Image {
 /// many paths.
 fn assert_as_by_paths(scene: SceneAndView, most: f32) {
     let world = world(scene);
-    let reference = by_paths(&world, 1024);
+    let reference = by_paths(&world, 512);
     let (ratio, rms) = against(&by_cuts(&world), &reference);
     let noise = relative_rms(&by_paths(&world, 4), &reference);
     assert!((ratio - 1.0).abs() < 0.02 && rms < most * noise, "{ratio} {rms}, paths {noise}");

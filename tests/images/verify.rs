@@ -130,9 +130,9 @@ fn pictures_by_filters_with_negative_lobes_are_measured_as_they_are() {
     let mut world = lit_room();
     world.view.camera.filter = PixelFilter::Lanczos;
     let a = world.view.camera.filter.sharpening();
-    let converged = path::Settings { spp: 2048, ..path::Settings::default() };
+    let converged = path::Settings { spp: 4096, ..path::Settings::default() };
     let output = rendered(&world, &converged);
-    let settings = VerifySettings { pixels: 300, ..VerifySettings::default() };
+    let settings = VerifySettings { pixels: 600, ..VerifySettings::default() };
     let sharp = check(&world, &output.color.sharpened(a), &settings);
     let soft = check(&world, &output.color, &settings);
     let noise = rel_mse_of_variance(&output.variance.unwrap().sharpened_variance(a), &output.color).sqrt();
