@@ -192,7 +192,7 @@ impl Search<'_> {
                     missed: None,
                 });
             }
-            // From between two steps to the upper one, or one further.
+            // The level rises to the next step, or one step further if the measured error exceeds the goal.
             step = (step.floor() + if verdict.over { 2.0 } else { 1.0 }).min(STEPS * ladder.top());
             image = self.render(&ladder.at(step / STEPS));
             raises += 1;
