@@ -1,8 +1,20 @@
 //! lightsplat: global illumination by lightcuts, reconstructed or cached, and a path-traced reference, over
 //! Embree 4.
 //!
-//! [`session`] is the interface: a scene held ready, and frames rendered of it; [`walk`] renders those of a camera
-//! path. The crates behind it, in the order of the data:
+//! [`session`] is the interface: a scene that is ready to render, and its frames. [`walk`] renders the frames of a
+//! camera path.
+//!
+//! ```no_run
+//! # use lightsplat::{film::write_exr, progress::Control, session::{Goal, Session}, view::{Framing, View}};
+//! # use std::path::Path;
+//! let session = Session::open(Path::new("scenes/cornell.toml"), &Default::default())?.session;
+//! let view = View::new(&session.cameras, &Framing::default())?;
+//! let frame = session.frame(&view, &Goal::default(), &Control::new())?;
+//! write_exr(Path::new("cornell.exr"), &frame.film)?;
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! The crates behind it, in the order of the data:
 //!
 //! - [`base`]: mathematics, threads, counters, settings, images and their files;
 //! - [`scene`]: the scene model; [`readers`] read scene files;

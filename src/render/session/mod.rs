@@ -1,15 +1,5 @@
 //! A session: a scene that is ready to render, and its frames.
 //!
-//! ```no_run
-//! # use lightsplat::{film::write_exr, progress::Control, session::{Goal, Session}, view::{Framing, View}};
-//! # use std::path::Path;
-//! let session = Session::open(Path::new("scenes/cornell.toml"), &Default::default())?.session;
-//! let view = View::new(&session.cameras, &Framing::default())?;
-//! let frame = session.frame(&view, &Goal::default(), &Control::new())?;
-//! write_exr(Path::new("cornell.exr"), &frame.film)?;
-//! # Ok::<(), Box<dyn std::error::Error>>(())
-//! ```
-//!
 //! The session holds all that frames share. A [`Goal`] sets how a frame is rendered, what its settings are planned for,
 //! and how its error is measured. A [`RenderedFrame`] holds the image and all that is reported about it.
 
