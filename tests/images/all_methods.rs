@@ -16,8 +16,11 @@ const ALBEDO: f32 = 0.5;
 /// Difference from 1 that noise and the bias of methods explain.
 const TOLERANCE: f64 = 0.03;
 
+/// Name of a scene, and the function that makes it.
+type NamedScene = (&'static str, fn() -> WorldAndView);
+
 /// Scenes of mean 1, each with the reason.
-const SCENES: [(&str, fn() -> WorldAndView); 10] = [
+const SCENES: [NamedScene; 10] = [
     ("nothing before a sky of radiance 1", || {
         let mut scene = scene(camera(Vec3::ZERO, Vec3::X, 0.5), [8, 8]);
         scene.environment = Some(Environment::Constant(Rgb::ONE));
