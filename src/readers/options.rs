@@ -7,7 +7,7 @@ use std::path::Path;
 /// Options for reading a scene.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct LoadOptions {
-    /// True if warnings of [`Severity::Warning`] are errors.
+    /// True if warnings of [`Severity::Warning`](crate::Severity::Warning) are errors.
     pub strict: bool,
     /// Number, counted from 1, or name of the camera to use. `None` stands for the first.
     pub camera: Option<String>,

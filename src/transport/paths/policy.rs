@@ -101,9 +101,9 @@ pub trait PathPolicy<'w> {
         false
     }
 
-    /// Receives the [`World::guide_albedo`] of the first surface that each path hits, `None` for mirrors and glass,
-    /// and the shading normal on that side, if paths may continue from it. The order of calls does not depend on
-    /// threads.
+    /// Receives the [guide albedo](world::World::guide_albedo) of the first surface that each path hits.
+    /// Mirrors and glass give `None`. The normal is the shading normal on that side. Paths may continue from there.
+    /// The order of calls does not depend on threads.
     fn see(&mut self, _path: u32, _albedo: Option<Rgb>, _normal: Vec3) {}
 
     /// Receives every surface that ends a chain. The order of calls does not depend on threads.

@@ -23,7 +23,6 @@
 //! - [`placement`]: points where records are needed next; [`adapt`]: shrinking of footprints that disagree visibly;
 //!   [`fill`]: both, until all samples are covered;
 //! - [`resolve`]: light of records at the eye samples, and the parts left to cuts; [`inspect`]: images of records;
-//! - [`work`]: expected work of a frame.
 
 pub mod adapt;
 pub mod candidate;
