@@ -48,7 +48,7 @@ fn run(context: &Context) -> Vec<Table> {
     for (what, call) in calls {
         let against = cases.len();
         for (i, material) in scene.materials.iter().enumerate() {
-            let bsdf = materials.at(scene, MaterialId(i as u32), Vec2::ZERO);
+            let bsdf = materials.at(MaterialId(i as u32), Vec2::ZERO);
             cases.push(Case::new(&[what, &material.name], against, DIRECTIONS as f64, move || {
                 for i in 0..DIRECTIONS {
                     let (wo, wi) = pair(i);

@@ -15,8 +15,7 @@ mod pixel_filter;
 mod principled;
 mod relief;
 pub mod requirements;
-mod texels;
-mod texture;
+pub mod texture;
 
 use glam::DVec3;
 use std::path::PathBuf;
@@ -30,8 +29,7 @@ pub use pixel_filter::PixelFilter;
 pub use principled::{Principled, eta_of_specular};
 pub use relief::Relief;
 pub use requirements::Requirements;
-pub use texels::Texels;
-pub use texture::{Filter, Texture, TextureId, Wrap};
+pub use texture::{Filter, Texels, Texture, TextureId, Textures, Wrap};
 
 /// Maximum ratio of a scene's diagonal to its vicinity, the distance from the camera that contains a tenth of the
 /// corners.
@@ -54,7 +52,7 @@ pub struct Scene {
     /// Materials, indexed by [`MaterialId`].
     pub materials: Vec<Material>,
     /// Textures, indexed by [`TextureId`].
-    pub textures: Vec<Texture>,
+    pub textures: Textures,
     /// Point, spot and directional lights.
     pub lights: Vec<DeltaLight>,
     /// Light from infinitely far, in all directions.

@@ -14,7 +14,7 @@ use embree::{Accel, BuildQuality, Device, Hit, TriangleId, TriangleMesh};
 use glam::{Vec2, Vec3};
 use scene::{Mesh, Scene};
 
-mod covered;
+mod footprint;
 mod hidden;
 pub mod light;
 pub mod material;
@@ -183,13 +183,19 @@ impl World {
         let mesh = &self.scene.meshes[s.mesh as usize];
         let uv = || mesh.uv(&self.triangles.get(s.mesh, s.triangle).vertices, s.barycentric);
         let covered = || self.covered(s.mesh, s.triangle, s.footprint);
-        self.materials.at_coordinates(&self.scene, mesh.material, uv, covered)
+        self.materials.at_coordinates(mesh.material, uv, covered)
     }
 
     /// Radiance the surface emits towards the unit vector `out`.
     #[inline]
     pub fn emitted(&self, s: &Surface, out: Vec3) -> Rgb {
-        emitted(&self.scene, s.mesh, s.triangle, s.barycentric, s.normal, out)
+        let mesh = &self.scene.meshes[s.mesh as usize];
+        let Some(emission) = mesh.emission else { return Rgb::ZERO };
+        let factor = |texture| {
+            let uv = mesh.uv(&mesh.triangles[s.triangle as usize], s.barycentric);
+            self.scene.textures.lookup(texture, uv)
+        };
+        emitted(&emission, s.normal, out, factor)
     }
 
     /// The albedo that guides denoisers, towards the unit vector `out`: the share of light that `bsdf` reflects, or the

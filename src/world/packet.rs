@@ -108,7 +108,7 @@ impl World {
             let mesh = &self.scene.meshes[s.mesh[i] as usize];
             let uv = || at[i].unwrap_or_else(|| self.coordinates(s, i));
             let covered = || self.covered(s.mesh[i], s.triangle[i], s.footprint.get(i));
-            self.materials.at_coordinates(&self.scene, mesh.material, uv, covered)
+            self.materials.at_coordinates(mesh.material, uv, covered)
         })
     }
 
@@ -123,17 +123,17 @@ impl World {
     /// wait for memory together.
     #[inline]
     fn textured(&self, s: &Surfaces16) -> [Option<Vec2>; LANES] {
-        let (mut at, mut lines) = ([None; LANES], [None; LANES]);
+        let (mut at, mut squares) = ([None; LANES], [None; LANES]);
         for i in 0..LANES {
             let mesh = &self.scene.meshes[s.mesh[i] as usize];
-            if let Some(texture) = self.materials.texture(&self.scene, mesh.material) {
+            if let Some(texture) = self.materials.texture(mesh.material) {
                 let uv = self.coordinates(s, i);
                 at[i] = Some(uv);
-                lines[i] = Some((&texture.texels, texture.line(uv)));
+                squares[i] = Some((&texture.texels, texture.square(uv)));
             }
         }
         // In a loop of its own, which is short enough for the processor to look ahead over all lanes.
-        let read = lines.iter().flatten().fold(0, |read, (texels, line)| read ^ texels.peek(*line));
+        let read = squares.iter().flatten().fold(0, |read, (texels, square)| read ^ texels.peek(*square));
         std::hint::black_box(read);
         at
     }

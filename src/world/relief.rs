@@ -9,10 +9,14 @@ use super::World;
 use super::triangle::Triangle;
 use base::math::Frame;
 use glam::{Vec2, Vec3};
-use scene::{Mesh, Relief, Scene};
+use scene::{Mesh, Relief, Scene, Textures};
 
-/// Reliefs of a scene, by mesh.
-pub(super) struct Reliefs(Vec<Turn>);
+/// Reliefs of a scene.
+pub(super) struct Reliefs {
+    /// Turns of the shading frames, by mesh.
+    turns: Vec<Turn>,
+    textures: Textures,
+}
 
 /// How the shading frames of a mesh differ from those of the interpolated normals.
 #[derive(Clone, Copy, Default, PartialEq)]
@@ -32,8 +36,9 @@ impl Reliefs {
                 Turn { relief: material.relief, from_u }
             })
         };
-        let all: Vec<Turn> = scene.meshes.iter().map(of).collect();
-        all.iter().any(|turn| *turn != Turn::default()).then_some(Reliefs(all))
+        let turns: Vec<Turn> = scene.meshes.iter().map(of).collect();
+        let any = turns.iter().any(|turn| *turn != Turn::default());
+        any.then(|| Reliefs { turns, textures: scene.textures.clone() })
     }
 }
 
@@ -48,11 +53,11 @@ impl World {
     /// x along u or at an angle from it, if its material asks for that.
     #[inline]
     pub(super) fn relieve(&self, frame: &mut Frame, mesh: u32, triangle: &Triangle, b: Vec2) {
-        let Some(Reliefs(reliefs)) = &self.reliefs else { return };
-        let Turn { relief, from_u } = &reliefs[mesh as usize];
+        let Some(Reliefs { turns, textures }) = &self.reliefs else { return };
+        let Turn { relief, from_u } = &turns[mesh as usize];
         let mesh = &self.scene.meshes[mesh as usize];
         if let Some(relief) = relief {
-            *frame = turned(&self.scene, relief, mesh, triangle, b, frame.normal);
+            *frame = turned(textures, relief, mesh, triangle, b, frame.normal);
         }
         if let Some(angle) = from_u {
             let [along_u, along_v] = derivatives(mesh, triangle);
@@ -69,20 +74,26 @@ impl World {
 
 /// Returns the frame of a relief where the shading normal is `normal`; the tangent is not along u.
 #[inline(never)]
-fn turned(scene: &Scene, relief: &Relief, mesh: &Mesh, triangle: &Triangle, b: Vec2, normal: Vec3) -> Frame {
+fn turned(
+    textures: &Textures,
+    relief: &Relief,
+    mesh: &Mesh,
+    triangle: &Triangle,
+    b: Vec2,
+    normal: Vec3,
+) -> Frame {
     let [along_u, along_v] = derivatives(mesh, triangle);
     let uv = mesh.uv(&triangle.vertices, b);
-    let texture = |id: scene::TextureId| scene.textures.get(id.0 as usize);
     let level = |v: Vec3| v - normal * normal.dot(v);
     let turned = match *relief {
-        Relief::Normals { texture: id, strength, y_along_v } => texture(id).map(|texture| {
+        Relief::Normals { texture: id, strength, y_along_v } => textures.by_id(id).map(|texture| {
             let local = texture.lookup(uv) * 2.0 - 1.0;
             let x = level(along_u).normalize_or_zero();
             let y = normal.cross(x);
             let y = if y_along_v && y.dot(along_v) < 0.0 { -y } else { y };
             x * (local.x * strength) + y * (local.y * strength) + normal * local.z
         }),
-        Relief::Heights { texture: id, scale } => texture(id).map(|texture| {
+        Relief::Heights { texture: id, scale } => textures.by_id(id).map(|texture| {
             let slope = texture.luminance_gradient(uv) * scale;
             let turned = (level(along_u) + normal * slope.x).cross(level(along_v) + normal * slope.y);
             if turned.dot(triangle.normal) < 0.0 { -turned } else { turned }
@@ -122,7 +133,7 @@ mod tests {
         let (name, height) = ("relief".into(), texels.len() / width);
         let (filter, wrap, to_uv) = (Filter::Bilinear, Wrap::Clamp, Mat3::IDENTITY);
         let texels = Texels::new(width, &texels);
-        scene.textures.push(Texture { name, width, height, texels, filter, wrap, to_uv });
+        add_texture(&mut scene, Texture { name, width, height, texels, filter, wrap, to_uv });
         let relieved = Material { relief: Some(relief), ..diffuse(Rgb::ONE) };
         let material = add_material(&mut scene, relieved);
         scene.meshes.push(textured(quad(Vec3::ZERO, Vec3::X * 2.0, Vec3::Y * 2.0, material), Vec2::ONE));

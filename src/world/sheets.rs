@@ -142,7 +142,7 @@ impl World {
         };
         let uv = || mesh.uv(&self.triangles.get(hit.geometry, hit.primitive).vertices, barycentric);
         let cos = || normal().dot(out);
-        self.materials.straight_transmittance(&self.scene, mesh.material, (cos, uv), last)
+        self.materials.straight_transmittance(mesh.material, cos, uv, last)
     }
 
     /// Parameter from which a segment goes on behind the sheet at a hit.

@@ -110,9 +110,16 @@ pub fn checkered(scene: &mut Scene, width: usize, texels: Vec<Rgb>) -> Material 
     let (filter, wrap) = (Filter::Nearest, Wrap::Repeat);
     let name = "checker".into();
     let texels = Texels::new(width, &texels);
-    scene.textures.push(Texture { name, width, height, texels, filter, wrap, to_uv: Mat3::IDENTITY });
-    let texture = TextureId(scene.textures.len() as u32 - 1);
+    let to_uv = Mat3::IDENTITY;
+    let texture = add_texture(scene, Texture { name, width, height, texels, filter, wrap, to_uv });
     Material { diffuse: Parameter::Textured { texture, scale: Rgb::ONE }, ..diffuse(Rgb::ZERO) }
+}
+
+/// Adds a texture to a scene.
+pub fn add_texture(scene: &mut Scene, texture: Texture) -> TextureId {
+    let textures: Vec<Texture> = scene.textures.iter().cloned().chain([texture]).collect();
+    scene.textures = textures.into();
+    TextureId(scene.textures.len() as u32 - 1)
 }
 
 pub fn add_material(scene: &mut Scene, material: Material) -> MaterialId {
@@ -132,7 +139,8 @@ pub fn textured_materials(materials: Vec<Material>) -> Scene {
             filter: Filter::Nearest,
             wrap: Wrap::Repeat,
             to_uv: Mat3::IDENTITY,
-        }],
+        }]
+        .into(),
         ..Scene::default()
     }
 }

@@ -4,7 +4,8 @@
 //! corners instead waits for memory twice, and up to four times.
 
 use glam::{Vec2, Vec3};
-use scene::{Mesh, Scene};
+use scene::Scene;
+use scene::texture::uv_scale;
 
 /// The triangles of all meshes.
 pub(super) struct Triangles {
@@ -38,7 +39,10 @@ impl Triangles {
             records.extend(mesh.triangles.iter().map(|&vertices| {
                 let [a, b, c] = vertices.map(|i| mesh.positions[i as usize]);
                 let edges = [b - a, c - a];
-                let uv_scale = uv_scale(mesh, vertices, edges);
+                let uv_scale = match mesh.uvs.as_slice() {
+                    [] => 0.0,
+                    uvs => uv_scale(vertices.map(|i| uvs[i as usize]), edges),
+                };
                 Triangle { corner: a, edges, normal: unit_normal(edges), vertices, uv_scale }
             }));
         }
@@ -64,16 +68,6 @@ impl Triangle {
 #[inline(always)]
 pub(super) fn position(corner: Vec3, edges: [Vec3; 2], b: Vec2) -> Vec3 {
     corner + (edges[0] * b.x + edges[1] * b.y)
-}
-
-/// Length by texture coordinates of what is one unit long on a triangle: the root of the ratio of its areas.
-fn uv_scale(mesh: &Mesh, vertices: [u32; 3], [e1, e2]: [Vec3; 2]) -> f32 {
-    let [a, b, c] = match mesh.uvs.as_slice() {
-        [] => return 0.0,
-        uvs => vertices.map(|i| uvs[i as usize]),
-    };
-    let scale = ((b - a).perp_dot(c - a).abs() / e1.cross(e2).length()).sqrt();
-    if scale.is_finite() { scale } else { 0.0 }
 }
 
 /// Returns the unit normal of a triangle from two edges, scaled first so that tiny triangles do not

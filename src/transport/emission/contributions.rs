@@ -109,7 +109,7 @@ fn add_light(
     let (x, normal) = (vertex.surface.position, vertex.surface.normal);
     let side = vertex.surface.frame.normal * vertex.wo.z.signum();
     let at = Receivers16 { position: &Vec3x16::splat(x), normal: &Vec3x16::splat(side), learned: None };
-    let (chosen, samples) = world.emitters.sample_of(&world.scene, at, &choices, &places, |_| true);
+    let (chosen, samples) = world.emitters.sample_of(at, &choices, &places, |_| true);
     for lane in lanes_in(samples.useful()) {
         let (direction, distance) = (samples.direction.get(lane), samples.distance[lane]);
         let y = luminance(vertex.reflected(direction, samples.radiance.get(lane))) / samples.pdf[lane];

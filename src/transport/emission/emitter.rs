@@ -86,7 +86,7 @@ impl<'w> PhotonEmitter<'w> {
     ) -> Option<EmissionSample> {
         let point = light.sample(numbers.place);
         let (direction, projected) = self.lit.direction(light, &point, numbers)?;
-        let radiance = light.radiance(&self.world.scene, &point, point.normal);
+        let radiance = light.radiance(&point, point.normal);
         let flux = radiance * (projected * light.area * inv_probability);
         let ray = shadow::ray_from(point.position, point.normal, direction);
         EmissionSample::new(ray, flux, Some(luminance(radiance)))

@@ -116,7 +116,7 @@ impl Tracer<'_, '_> {
             }
             let (position, normals) = (Vec3x16::splat(x), Vec3x16::splat(normal));
             let at = Receivers16 { position: &position, normal: &normals, learned: None };
-            let (chosen, samples) = self.world.emitters.sample_lamps(&self.world.scene, at, &choices, &u);
+            let (chosen, samples) = self.world.emitters.sample_lamps(at, &choices, &u);
             let (mut segments, mut lit) = (Rays16::default(), 0u16);
             for lane in lanes_in(samples.useful()) {
                 let (direction, distance) = (samples.direction.get(lane), samples.distance[lane]);

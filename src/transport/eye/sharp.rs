@@ -127,7 +127,7 @@ impl Sharp<'_> {
         }
         let (x, n) = LightReceiver::new(self.surface, self.lobe, self.wo).splat();
         let at = Receivers16 { position: &x, normal: &n, learned: None };
-        let lights = emitters.sample_direct(&self.world.scene, at, &choices, &places, u16::MAX);
+        let lights = emitters.sample_direct(at, &choices, &places, u16::MAX);
         let (mut values, mut sum) = ([Rgb::ZERO; LANES], 0.0);
         for i in lanes_in(lights.useful()).filter(|i| lights.delta[*i] == 0) {
             let wi = self.surface.frame.to_local(lights.direction.get(i));

@@ -14,7 +14,7 @@ use base::sampling::Sampler;
 use glam::{DVec3, Mat3, Vec2, Vec3};
 use scene::{
     Camera, Coat, DeltaLight, Distribution, Emission, Filter, Fresnel, Lobe, Material, MaterialId, Mesh,
-    Reflectance, Texels, Texture, TextureId, Wrap,
+    Reflectance, Texels, Texture, Wrap,
 };
 use std::time::Duration;
 use world::World;
@@ -355,7 +355,7 @@ fn a_sign_has_its_picture_for_albedo_whatever_its_brightness() {
         let mut scene = seen_from_origin([8, 4]);
         let dark = add_material(&mut scene, diffuse(Rgb::new(0.1, 0.02, 0.02)));
         let texels = Texels::new(2, &[Rgb::new(0.5, 0.0, 0.05), Rgb::new(0.0, 0.25, 0.125)]);
-        scene.textures.push(Texture {
+        let sign = Texture {
             name: "sign".to_owned(),
             width: 2,
             height: 1,
@@ -363,10 +363,10 @@ fn a_sign_has_its_picture_for_albedo_whatever_its_brightness() {
             filter: Filter::Nearest,
             wrap: Wrap::Clamp,
             to_uv: Mat3::IDENTITY,
-        });
+        };
+        let texture = Some(add_texture(&mut scene, sign));
         let mut sign = wall(-4.0, dark);
         sign.uvs = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]].map(Vec2::from).to_vec();
-        let texture = Some(TextureId(0));
         sign.emission = Some(Emission { radiance: Rgb::splat(brightness), texture, two_sided: true });
         scene.meshes.push(sign);
         let layers = all_features(&world(scene), 4);

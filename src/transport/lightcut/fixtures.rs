@@ -96,7 +96,7 @@ pub fn profiles() -> Profiles {
         let frame = Frame::from_normal(numbers.direction());
         let towards_light = numbers.direction();
         let wi = frame.to_local(towards_light);
-        let bsdf = materials.at(&scene, id, Vec2::ZERO);
+        let bsdf = materials.at(id, Vec2::ZERO);
         let normal = frame.normal * wi.z.signum();
         lobes.extend(bsdf.reflected_lobes(wi).map(|lobe| LobeProfile {
             normal,
@@ -123,7 +123,7 @@ pub fn random_receiver<'m>(
     let id = MaterialId((n.next() * scene.materials.len() as f32) as u32);
     let normal = n.direction();
     let geometric = (normal + n.direction() * 0.2).normalize();
-    let bsdf = materials.at(scene, id, Vec2::ZERO);
+    let bsdf = materials.at(id, Vec2::ZERO);
     Receiver::new(n.vec3() * scale, geometric, &Frame::from_normal(normal), bsdf, n.direction())
 }
 

@@ -75,7 +75,7 @@ fn add_area_light(world: &World, light: &AreaLight, patches: Patches, set: &mut 
     set.reserve(patches.count as usize * if light.emission.two_sided { 2 } else { 1 });
     for i in (0..patches.count).take_while(|_| !control.is_cancelled()) {
         let point = light.sample(owen_sobol_2d(i, patches.seed));
-        let radiance = light.radiance(&world.scene, &point, point.normal);
+        let radiance = light.radiance(&point, point.normal);
         set.push(Vpl::patch(point.position, point.normal, patches.size), radiance * area);
         if light.emission.two_sided {
             set.push(Vpl::patch(point.position, -point.normal, patches.size), radiance * area);

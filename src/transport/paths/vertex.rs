@@ -370,7 +370,7 @@ impl Packet {
         mut arrives: impl FnMut(Option<&Ray>, Rgb, u32),
     ) {
         let LightStep { bsdfs, at, u_choice, u_light, wanted, alone, guided } = step;
-        let lights = world.emitters.sample_direct(&world.scene, at, u_choice, u_light, wanted);
+        let lights = world.emitters.sample_direct(at, u_choice, u_light, wanted);
         let mut wi = Vec3x16::default();
         for i in 0..LANES {
             wi.set(i, surfaces.frame(i).to_local(lights.direction.get(i)));

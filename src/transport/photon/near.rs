@@ -122,7 +122,7 @@ impl IndirectLight<'_> {
             u.set(lane, samplers[lane].next_2d());
         }
         let at = near.receivers();
-        let lights = world.emitters.sample_direct(&world.scene, at, &choice, &u, near.lanes);
+        let lights = world.emitters.sample_direct(at, &choice, &u, near.lanes);
         for lane in lanes_in(near.lanes & lights.useful()) {
             let (direction, distance) = (lights.direction.get(lane), lights.distance[lane]);
             let (position, geometric) = (near.position.get(lane), near.geometric.get(lane));

@@ -4,7 +4,7 @@ use super::distribution::DiscreteDistribution;
 use base::math::{Rgb, luminance};
 use base::sampling::uniform_triangle;
 use glam::{Vec2, Vec3};
-use scene::{Emission, Mesh, Scene, TextureId};
+use scene::{Emission, Scene, Texture, TextureId, Textures};
 
 /// A mesh that emits.
 #[derive(Clone, Debug)]
@@ -22,6 +22,38 @@ pub struct AreaLight {
     triangles: DiscreteDistribution,
     /// First corner, two edges and unit normal of each triangle.
     shapes: Vec<[Vec3; 4]>,
+    /// Texture of the emission, if there is one.
+    texture: Option<EmissionTexture>,
+}
+
+/// Texture that scales the emission of a mesh.
+#[derive(Clone, Debug)]
+struct EmissionTexture {
+    textures: Textures,
+    id: TextureId,
+    /// Texture coordinates of each triangle's corners; empty if the mesh has none.
+    uvs: Vec<[Vec2; 3]>,
+}
+
+impl EmissionTexture {
+    /// Collects the texture coordinates of mesh `index`.
+    fn new(scene: &Scene, index: u32, id: TextureId) -> EmissionTexture {
+        let mesh = &scene.meshes[index as usize];
+        let uvs = match mesh.uvs.as_slice() {
+            [] => Vec::new(),
+            uvs => mesh.triangles.iter().map(|vertices| vertices.map(|i| uvs[i as usize])).collect(),
+        };
+        EmissionTexture { textures: scene.textures.clone(), id, uvs }
+    }
+
+    /// Returns the factor on the emission at barycentric weights `b` of a triangle.
+    fn factor(&self, triangle: u32, b: Vec2) -> Rgb {
+        let uv = match self.uvs.get(triangle as usize) {
+            Some([u0, u1, u2]) => *u0 * (1.0 - b.x - b.y) + *u1 * b.x + *u2 * b.y,
+            None => b,
+        };
+        self.textures.lookup(self.id, uv)
+    }
 }
 
 /// A point on an area light.
@@ -61,7 +93,7 @@ impl AreaLight {
         let triangles = DiscreteDistribution::new(shapes.iter().map(|s| s.1));
         let area = triangles.total() as f32;
         let (mean_texture, greatest) = emission.texture.map_or((Rgb::ONE, Rgb::ONE), |t| {
-            let texels = &scene.textures[t.0 as usize].texels;
+            let Some(Texture { texels, .. }) = scene.textures.by_id(t) else { return (Rgb::ONE, Rgb::ONE) };
             let mean = texels.iter().sum::<Rgb>() / texels.len().max(1) as f32;
             (mean, texels.iter().fold(Rgb::ZERO, Rgb::max))
         });
@@ -76,6 +108,7 @@ impl AreaLight {
             area,
             power,
             greatest: (emission.radiance * greatest).max_element(),
+            texture: emission.texture.map(|id| EmissionTexture::new(scene, index, id)),
             triangles,
             shapes: (0..mesh.triangles.len())
                 .map(|t| {
@@ -119,40 +152,24 @@ impl AreaLight {
 
     /// Returns the factor of the texture on the emission at a point of a triangle.
     #[inline]
-    pub(super) fn texture(&self, scene: &Scene, triangle: u32, barycentric: Vec2) -> Rgb {
-        let mesh = &scene.meshes[self.mesh as usize];
-        texture_factor(scene, mesh, self.emission.texture, triangle, barycentric)
+    pub(super) fn texture(&self, triangle: u32, barycentric: Vec2) -> Rgb {
+        self.texture.as_ref().map_or(Rgb::ONE, |texture| texture.factor(triangle, barycentric))
     }
 
-    /// Radiance leaving a point of the light towards the unit vector `out`.
+    /// Returns the radiance that leaves a point of the light towards the unit vector `out`.
     #[inline]
-    pub fn radiance(&self, scene: &Scene, point: &AreaPoint, out: Vec3) -> Rgb {
-        emitted(scene, self.mesh, point.triangle, point.barycentric, point.normal, out)
+    pub fn radiance(&self, point: &AreaPoint, out: Vec3) -> Rgb {
+        let factor = |_| self.texture(point.triangle, point.barycentric);
+        emitted(&self.emission, point.normal, out, factor)
     }
 }
 
-/// Returns the radiance that a point of a mesh emits towards `out`; zero where it does not emit.
+/// Returns the radiance that a point of an emitter with the geometric normal `normal` emits towards `out`. `factor`
+/// looks the texture up.
 #[inline]
-pub fn emitted(scene: &Scene, mesh: u32, triangle: u32, barycentric: Vec2, normal: Vec3, out: Vec3) -> Rgb {
-    let mesh = &scene.meshes[mesh as usize];
-    let Some(emission) = mesh.emission else { return Rgb::ZERO };
+pub fn emitted(emission: &Emission, normal: Vec3, out: Vec3, factor: impl FnOnce(TextureId) -> Rgb) -> Rgb {
     if !emission.two_sided && normal.dot(out) <= 0.0 {
         return Rgb::ZERO;
     }
-    emission.radiance * texture_factor(scene, mesh, emission.texture, triangle, barycentric)
-}
-
-/// Returns the factor of the texture on a mesh's emission.
-#[inline]
-fn texture_factor(
-    scene: &Scene,
-    mesh: &Mesh,
-    texture: Option<TextureId>,
-    triangle: u32,
-    barycentric: Vec2,
-) -> Rgb {
-    texture.map_or(Rgb::ONE, |t| {
-        let uv = mesh.uv(&mesh.triangles[triangle as usize], barycentric);
-        scene.textures[t.0 as usize].lookup(uv)
-    })
+    emission.radiance * emission.texture.map_or(Rgb::ONE, factor)
 }

@@ -4,7 +4,6 @@ use super::{AreaLight, DirectSample, Emitters, Receivers16, sample_delta};
 use base::math::{F32x16, LANES, Rgb, U32x16, Vec2x16, Vec3x16, lanes_in, mask_of};
 use base::sampling::uniform_triangle;
 use glam::Vec2;
-use scene::Scene;
 
 /// Light arriving at sixteen points; see [`super::DirectSample`] for the members.
 #[derive(Clone, Debug, Default)]
@@ -65,20 +64,18 @@ impl Emitters {
     #[inline]
     pub fn sample_direct(
         &self,
-        scene: &Scene,
         at: Receivers16,
         u_choice: &F32x16,
         u: &Vec2x16,
         wanted: u16,
     ) -> DirectSamples16 {
         let (chosen, choice) = self.selection.sample(self, at, u_choice, wanted);
-        self.sample_chosen(scene, at, (&chosen, &choice), u, wanted)
+        self.sample_chosen(at, &chosen, &choice, u, wanted)
     }
 
     /// [`Emitters::sample_direct`] in all lanes, where the emitter chosen `is_wanted`; returns the emitters, too.
     pub fn sample_of(
         &self,
-        scene: &Scene,
         at: Receivers16,
         u_choice: &F32x16,
         u: &Vec2x16,
@@ -86,27 +83,21 @@ impl Emitters {
     ) -> (U32x16, DirectSamples16) {
         let (chosen, choice) = self.selection.sample(self, at, u_choice, u16::MAX);
         let wanted = mask_of(&chosen.map(|emitter| u32::from(is_wanted(emitter))));
-        (chosen, self.sample_chosen(scene, at, (&chosen, &choice), u, wanted))
+        (chosen, self.sample_chosen(at, &chosen, &choice, u, wanted))
     }
 
     /// [`Emitters::sample_of`] all but the environment.
-    pub fn sample_lamps(
-        &self,
-        scene: &Scene,
-        at: Receivers16,
-        u_choice: &F32x16,
-        u: &Vec2x16,
-    ) -> (U32x16, DirectSamples16) {
-        self.sample_of(scene, at, u_choice, u, |emitter| emitter != self.environment_index())
+    pub fn sample_lamps(&self, at: Receivers16, u_choice: &F32x16, u: &Vec2x16) -> (U32x16, DirectSamples16) {
+        self.sample_of(at, u_choice, u, |emitter| emitter != self.environment_index())
     }
 
-    /// Samples light of emitters chosen with their probabilities, in the lanes of `wanted`.
+    /// Samples the light of emitters that were `chosen` with probability `choice`, in the lanes of `wanted`.
     #[inline]
     fn sample_chosen(
         &self,
-        scene: &Scene,
         at: Receivers16,
-        (chosen, choice): (&U32x16, &F32x16),
+        chosen: &U32x16,
+        choice: &F32x16,
         u: &Vec2x16,
         wanted: u16,
     ) -> DirectSamples16 {
@@ -124,7 +115,7 @@ impl Emitters {
         let mut samples = triangles.sample(at.position, choice);
         for lane in lanes_in(textured) {
             let light = &self.areas[chosen[lane] as usize];
-            let factor = light.texture(scene, triangles.index[lane], triangles.barycentric.get(lane));
+            let factor = light.texture(triangles.index[lane], triangles.barycentric.get(lane));
             let radiance = samples.radiance.get(lane) * factor;
             samples.radiance.set(lane, radiance);
             samples.useful[lane] &= u32::from(radiance != Rgb::ZERO);

@@ -102,7 +102,7 @@ fn probabilities(emitters: &Emitters, (x, n): (Vec3, Vec3), learned: Option<&Lea
 }
 
 /// Irradiance by one emitter at a point, without occluders, by `steps` squared points; not zero where light arrives.
-fn irradiance(scene: &Scene, emitters: &Emitters, index: usize, (x, n): (Vec3, Vec3), steps: u32) -> f64 {
+fn irradiance(emitters: &Emitters, index: usize, (x, n): (Vec3, Vec3), steps: u32) -> f64 {
     if let Some(light) = emitters.areas.get(index) {
         let mut sum = 0.0;
         for i in 0..steps * steps {
@@ -111,7 +111,7 @@ fn irradiance(scene: &Scene, emitters: &Emitters, index: usize, (x, n): (Vec3, V
             let offset = point.position - x;
             let direction = offset.normalize();
             let cosines = n.dot(direction).max(0.0) * point.normal.dot(direction).abs();
-            let radiance = luminance(light.radiance(scene, &point, -direction));
+            let radiance = luminance(light.radiance(&point, -direction));
             sum += f64::from(radiance * cosines * light.area / offset.length_squared());
         }
         return sum / f64::from(steps * steps);
@@ -162,7 +162,7 @@ fn frequencies_are_the_probabilities_and_all_that_shines_can_be_chosen() {
             let sum = expected.iter().sum::<f32>() + none as f32 / DRAWS as f32;
             assert!((sum - 1.0).abs() < 0.02, "{sum}");
             for (index, probability) in expected.iter().enumerate() {
-                let arrives = irradiance(&scene, &emitters, index, (x, n), 16);
+                let arrives = irradiance(&emitters, index, (x, n), 16);
                 assert!(arrives == 0.0 || *probability > 0.0, "{arrives} of emitter {index}");
             }
         }
@@ -214,7 +214,7 @@ fn the_mean_of_direct_light_is_the_sum_over_all_emitters() {
                 continue;
             }
             let all = 0..=emitters.environment_index() as usize;
-            let expected: f64 = all.map(|i| irradiance(&scene, &emitters, i, (x, n), 32)).sum();
+            let expected: f64 = all.map(|i| irradiance(&emitters, i, (x, n), 32)).sum();
             let (positions, normals) = (Vec3x16::splat(x), Vec3x16::splat(n));
             let learned = (points as u32).is_multiple_of(2).then_some(&knowledge);
             let at = Receivers16 { position: &positions, normal: &normals, learned };
@@ -226,7 +226,7 @@ fn the_mean_of_direct_light_is_the_sum_over_all_emitters() {
                     choices[i] = numbers.next_1d();
                     places.set(i, numbers.next_2d());
                 }
-                let lights = emitters.sample_direct(&scene, at, &choices, &places, u16::MAX);
+                let lights = emitters.sample_direct(at, &choices, &places, u16::MAX);
                 for i in base::math::lanes_in(lights.useful()) {
                     let cos = n.dot(lights.direction.get(i)).max(0.0);
                     let value = f64::from(luminance(lights.radiance.get(i)) * cos / lights.pdf[i]);
@@ -261,7 +261,7 @@ fn densities_of_points_are_those_of_sampling_them() {
                 places.set(i, sampler.next_2d());
             }
             let (chosen, _) = emitters.selection.sample(&emitters, at, &choices, u16::MAX);
-            let lights = emitters.sample_direct(&scene, at, &choices, &places, u16::MAX);
+            let lights = emitters.sample_direct(at, &choices, &places, u16::MAX);
             for i in base::math::lanes_in(lights.useful()) {
                 let Some(light) = emitters.areas.get(chosen[i] as usize) else { continue };
                 let cos = lights.normal.get(i).dot(lights.direction.get(i));

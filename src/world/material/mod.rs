@@ -18,7 +18,6 @@ mod fresnel;
 mod layers;
 mod lobe;
 mod microfacet;
-mod mip_maps;
 mod model;
 mod packet;
 mod principled;

@@ -4,12 +4,12 @@ use super::base::{BaseModel, CoatInterface};
 use super::bsdf::{Bsdf, Colours};
 use super::layers::{Layers, Source, Tables};
 use super::lobe::{DIFFUSE_ALPHA, LobeModel, MAX_LOBES, max_reflectance_table};
-use super::mip_maps::MipMaps;
 use super::roughness::{Level, Levels};
 use super::straight::Straight;
 use base::math::{Rgb, luminance};
 use glam::Vec2;
 use rayon::prelude::*;
+use scene::texture::MipMaps;
 use scene::{Fresnel, Material, MaterialId, Scene, Share, Texture, TextureId};
 use std::cell::RefCell;
 use std::sync::Arc;
@@ -22,7 +22,7 @@ pub struct Materials {
     count: usize,
     /// Every coat that differs from others; the first is none.
     coats: Vec<CoatInterface>,
-    mip_maps: MipMaps,
+    textures: MipMaps,
     /// Colours of the materials with every texture replaced by its mean.
     averages: Vec<Colours<Rgb>>,
 }
@@ -96,13 +96,13 @@ impl Materials {
         let means: Vec<Rgb> = textures.par_iter().map(Texture::mean).collect();
         let mean = |id: TextureId| means.get(id.0 as usize).copied().unwrap_or(Rgb::ONE);
         let averages = models[..count].iter().map(|model| model.colours(mean)).collect();
-        Materials { models, count, coats, mip_maps, averages }
+        Materials { models, count, coats, textures: mip_maps, averages }
     }
 
     /// True if some textures are averaged over what a ray stands for.
     #[inline]
     pub fn filter_textures(&self) -> bool {
-        !self.mip_maps.is_empty()
+        self.textures.filter()
     }
 
     /// Returns the number of materials.
@@ -117,10 +117,10 @@ impl Materials {
         self.coats.get(coat as usize).map_or(1.0, |coat| coat.transmittance(cos))
     }
 
-    /// Returns the material at texture coordinates `uv`. `scene` must be the one the materials were made from.
+    /// Returns the material at texture coordinates `uv`.
     #[inline]
-    pub fn at(&self, scene: &Scene, id: MaterialId, uv: Vec2) -> Bsdf<'_> {
-        self.at_coordinates(scene, id, || uv, || 0.0)
+    pub fn at(&self, id: MaterialId, uv: Vec2) -> Bsdf<'_> {
+        self.at_coordinates(id, || uv, || 0.0)
     }
 
     /// Returns the material at texture coordinates that are only asked for where there is a texture, textures averaged
@@ -128,7 +128,6 @@ impl Materials {
     #[inline]
     pub fn at_coordinates(
         &self,
-        scene: &Scene,
         id: MaterialId,
         uv: impl FnOnce() -> Vec2,
         covered: impl FnOnce() -> f32,
@@ -138,26 +137,20 @@ impl Materials {
             Some(colours) => Bsdf { model, base: colours.base, scales: colours.scales },
             None => {
                 let covered = if model.filters { covered() } else { 0.0 };
-                self.textured(model, scene, uv(), covered)
+                self.textured(model, uv(), covered)
             }
         }
     }
 
     /// Texture of the material that a look-up reads first; `None` if it has none.
     #[inline]
-    pub fn texture<'s>(&self, scene: &'s Scene, id: MaterialId) -> Option<&'s Texture> {
+    pub fn texture(&self, id: MaterialId) -> Option<&Texture> {
         let first = self.models[id.0 as usize].first_texture?;
-        scene.textures.get(first.0 as usize)
+        self.textures.textures().by_id(first)
     }
 
-    fn textured<'m>(&'m self, mut model: &'m Model, scene: &Scene, uv: Vec2, covered: f32) -> Bsdf<'m> {
-        let texel = |id: TextureId| {
-            let texture = scene.textures.get(id.0 as usize);
-            texture.map_or(Rgb::ONE, |texture| match covered > 0.0 {
-                true => self.mip_maps.level(texture, id, covered).lookup(uv),
-                false => texture.lookup(uv),
-            })
-        };
+    fn textured<'m>(&'m self, mut model: &'m Model, uv: Vec2, covered: f32) -> Bsdf<'m> {
+        let texel = |id: TextureId| self.textures.lookup(id, uv, covered);
         if let Some(levels) = &model.levels {
             model = &self.models[levels.model(luminance(texel(levels.texture)))];
         }
@@ -168,11 +161,11 @@ impl Materials {
     /// Share of the surface that is not there, where light passes straight by such gaps alone and something is
     /// textured; `None` elsewhere.
     #[inline]
-    pub(super) fn gaps(&self, scene: &Scene, id: MaterialId, uv: impl FnOnce() -> Vec2) -> Option<f32> {
+    pub(super) fn gaps(&self, id: MaterialId, uv: impl FnOnce() -> Vec2) -> Option<f32> {
         let model = &self.models[id.0 as usize];
         let (share, _) = model.opacity.filter(|_| model.only_by_gaps && model.constant.is_none())?;
         let uv = uv();
-        let texel = |id: TextureId| scene.textures.get(id.0 as usize).map_or(Rgb::ONE, |t| t.lookup(uv));
+        let texel = |id: TextureId| self.textures.textures().lookup(id, uv);
         Some(1.0 - opaque(&share, texel))
     }
 

@@ -4,7 +4,7 @@ use super::lobe::{Interface, LobeModel, MAX_LOBES};
 use super::model::Materials;
 use base::math::Rgb;
 use glam::{Vec2, Vec3};
-use scene::{MaterialId, Scene};
+use scene::MaterialId;
 
 /// Lobes that light passes straight, where nothing of the material is textured.
 #[derive(Clone, Debug, Default)]
@@ -53,16 +53,16 @@ impl Materials {
     #[inline]
     pub fn straight_transmittance(
         &self,
-        scene: &Scene,
         id: MaterialId,
-        (cos, uv): (impl FnOnce() -> f32, impl Fn() -> Vec2),
+        cos: impl FnOnce() -> f32,
+        uv: impl Fn() -> Vec2,
         last: &mut Option<LastStraight>,
     ) -> Rgb {
         let Some(straight) = self.straight(id) else {
-            if let Some(gaps) = self.gaps(scene, id, &uv) {
+            if let Some(gaps) = self.gaps(id, &uv) {
                 return Rgb::splat(gaps);
             }
-            return self.at_coordinates(scene, id, uv, || 0.0).straight_transmittance(cos());
+            return self.at_coordinates(id, uv, || 0.0).straight_transmittance(cos());
         };
         let cos = cos();
         match *last {

@@ -23,7 +23,7 @@ use scene::{
 fn with_bsdf<R>(material: &Material, f: impl FnOnce(Bsdf) -> R) -> R {
     let scene = scene(vec![material.clone()]);
     let materials = Materials::new(&scene);
-    f(materials.at(&scene, MaterialId(0), Vec2::ZERO))
+    f(materials.at(MaterialId(0), Vec2::ZERO))
 }
 
 const GOLD: Fresnel =
@@ -243,7 +243,7 @@ fn textures_are_looked_up_where_they_are_and_only_there() {
     let materials = Materials::new(&scene);
     let (wo, wi) = (direction(0.3, 0.0), direction(0.3, 3.0));
     for (id, whole) in [(0, Rgb::splat(0.5)), (1, Rgb::splat(0.5)), (2, Rgb::splat(0.5))] {
-        let at = |u| materials.at(&scene, MaterialId(id), Vec2::new(u, 0.5)).eval(wo, wi);
+        let at = |u| materials.at(MaterialId(id), Vec2::new(u, 0.5)).eval(wo, wi);
         let (red, green) = (at(0.25), at(0.75));
         let constant = match id {
             0 => lambert(whole),
@@ -278,7 +278,7 @@ fn textured_roughness_is_that_of_the_place() {
         assert_eq!(materials.count(), 2);
         assert!(materials.average(MaterialId(1)).is_of_mean_roughness());
         for (u, texel) in [(0.25, 0.2126), (0.75, 0.7152)] {
-            let bsdf = materials.at(&scene, MaterialId(1), Vec2::new(u, 0.5));
+            let bsdf = materials.at(MaterialId(1), Vec2::new(u, 0.5));
             assert_eq!(bsdf.material(), MaterialId(1));
             let (_, lobe) = bsdf.dull_lobes().next().unwrap();
             assert!((lobe.alpha() / (0.9 * texel) - 1.0).abs() < 0.0115, "{index} {u}: {}", lobe.alpha());

@@ -67,7 +67,7 @@ pub(crate) fn sanitize(
     let main_file = draft.main_file();
     let place = |i: usize| draft.material_places.get(i).unwrap_or(&main_file);
     for (i, material) in draft.scene.materials.iter_mut().enumerate() {
-        let checked = check_material(material, &mut draft.scene.textures, place(i), &mut report, log);
+        let checked = check_material(material, draft.scene.textures.edit(), place(i), &mut report, log);
         log.part(checked);
     }
     if let Some(texture) = draft.scene.textures.iter().find(|texture| !texture.to_uv.is_finite()) {

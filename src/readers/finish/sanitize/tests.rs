@@ -273,7 +273,7 @@ fn texels_are_clamped_to_what_their_factor_leaves() {
     };
     let diffuse = Reflectance::Textured { texture: TextureId(0), scale: Rgb::splat(2.0) };
     let mut d = draft(vec![], vec![Material { diffuse, ..grey() }]);
-    d.scene.textures.push(texture);
+    d.scene.textures = vec![texture].into();
     let (report, _) = sanitize(&mut d).unwrap();
     assert_eq!((report.clamped, report.bad_texels), (1, 2));
     let expected = [Rgb::splat(0.5), Rgb::ZERO, Rgb::new(0.0, 0.2, 0.2), Rgb::splat(0.4)];

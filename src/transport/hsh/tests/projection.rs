@@ -49,7 +49,7 @@ fn principled(metallic: f32, sheen: f32) -> Material {
 fn with_lobe<R>(material: Material, f: impl FnOnce(DullLobe) -> R) -> R {
     let scene = scene(vec![material]);
     let materials = Materials::new(&scene);
-    f(materials.at(&scene, MaterialId(0), Vec2::ZERO).dull_lobes().next().unwrap().1)
+    f(materials.at(MaterialId(0), Vec2::ZERO).dull_lobes().next().unwrap().1)
 }
 
 fn relative_error(projection: &KernelProjection, bands: usize) -> f64 {
@@ -140,7 +140,7 @@ fn kernels_are_projections_from_any_azimuth() {
     let directions = hemisphere();
     for i in 0..scene.materials.len() {
         let id = MaterialId(i as u32);
-        let bsdf = materials.at(&scene, id, Vec2::ZERO);
+        let bsdf = materials.at(id, Vec2::ZERO);
         assert_eq!(surfaces.caching(id), Caching::Series(8));
         for (inclination, azimuth) in [(0.0, 0.0), (0.3, 1.0), (0.8, -2.0), (1.2, 3.0)] {
             let wo = outgoing(inclination, azimuth);
@@ -173,7 +173,7 @@ fn interpolation_keeps_its_tolerance_everywhere() {
     let quadrature = Quadrature::standard();
     let mut random = Random(3);
     for i in 0..scene.materials.len() {
-        let lobe = materials.at(&scene, MaterialId(i as u32), Vec2::ZERO).dull_lobes().next().unwrap().1;
+        let lobe = materials.at(MaterialId(i as u32), Vec2::ZERO).dull_lobes().next().unwrap().1;
         for tolerance in [0.01, 0.001] {
             let table = lobe_table::LobeTable::new(lobe, MAX_BANDS, tolerance, &quadrature);
             assert!(table.directions() > 16 && table.directions() < 200);
@@ -218,7 +218,7 @@ fn smooth_light_is_reflected_within_the_product_of_what_both_series_leave_out() 
     for (e, environment) in environments.iter().enumerate() {
         for i in 0..scene.materials.len() {
             let id = MaterialId(i as u32);
-            let bsdf = materials.at(&scene, id, Vec2::ZERO);
+            let bsdf = materials.at(id, Vec2::ZERO);
             let Caching::Series(bands) = surfaces.caching(id) else { panic!("{i}") };
             let mut accumulator = Accumulator::new(usize::from(bands));
             let mut light_norm_sq = 0.0;
@@ -264,7 +264,7 @@ fn hundreds_of_virtual_lights_are_reflected_as_by_the_brdf() {
     let surfaces = MaterialSeries::new(&materials, &SeriesSettings::default());
     for i in 0..2 {
         let id = MaterialId(i);
-        let bsdf = materials.at(&scene, id, Vec2::ZERO);
+        let bsdf = materials.at(id, Vec2::ZERO);
         let bands = surfaces.caching(id).bands().unwrap();
         let mut random = Random(11);
         let (mut sum_sq, mut compared) = (0.0, 0);
@@ -348,7 +348,7 @@ fn each_material_gets_the_records_it_needs() {
     // One table serves the lobe of α = 0.5 with and without a base; four are of the principled material's lobes.
     assert_eq!(surfaces.tables(), 8);
     // Bases alone, of irradiance materials too, are reflected as well as a series can.
-    let bsdf = materials.at(&scene, MaterialId(1), Vec2::ZERO);
+    let bsdf = materials.at(MaterialId(1), Vec2::ZERO);
     let mut accumulator = Accumulator::new(3);
     let mut expected = 0.0;
     for (wi, solid_angle) in hemisphere() {
@@ -380,7 +380,7 @@ fn textures_scale_base_and_lobe_at_each_point() {
         }
         let light = accumulator.finish();
         for u in [0.25, 0.75] {
-            let bsdf = materials.at(&scene, id, Vec2::new(u, 0.5));
+            let bsdf = materials.at(id, Vec2::new(u, 0.5));
             let expected = directions.iter().fold(DVec3::ZERO, |sum, (wi, solid_angle)| {
                 sum + bsdf.eval(wo.as_vec3(), wi.as_vec3()).as_dvec3() * wi.z * *solid_angle / PI
             });
@@ -403,8 +403,7 @@ fn tables_are_the_same_for_any_number_of_threads() {
         pool.install(|| {
             (0..scene.materials.len())
                 .map(|i| {
-                    let lobe =
-                        materials.at(&scene, MaterialId(i as u32), Vec2::ZERO).dull_lobes().next().unwrap().1;
+                    let lobe = materials.at(MaterialId(i as u32), Vec2::ZERO).dull_lobes().next().unwrap().1;
                     lobe_table::LobeTable::new(lobe, 6, 0.002, &quadrature)
                 })
                 .collect::<Vec<_>>()

@@ -22,7 +22,7 @@ fn neighbours<'m>(
     numbers: &mut RandomNumbers,
 ) -> Vec<Receiver<'m>> {
     let first = random_receiver(materials, scene, scale, numbers);
-    let lambert = materials.at(scene, MaterialId(0), Vec2::ZERO);
+    let lambert = materials.at(MaterialId(0), Vec2::ZERO);
     // In half of the groups two materials that are not uniform.
     let another = random_receiver(materials, scene, scale, numbers).bsdf().filter(|_| numbers.next() < 0.5);
     let other = another.map_or(lambert, |(bsdf, _)| bsdf);
@@ -158,7 +158,7 @@ fn one_lane_clamps_as_a_single_point_does() {
     let trees = LightTrees::build(&[set], Vec::new(), 1.7, Family::Divisive, &Control::new());
     let transfer = Transfer::new(&trees, 1.7);
     let frame = base::math::Frame::from_normal(Vec3::Y);
-    let lambert = materials.at(&scene, MaterialId(0), Vec2::ZERO);
+    let lambert = materials.at(MaterialId(0), Vec2::ZERO);
     let at = |p| Receiver::new(p, Vec3::Y, &frame, lambert, Vec3::Y);
     let settings = CutSettings { epsilon: 0.002, max_cut: 100_000, clamp: Some(0.02), origin: None };
     let mut points = ReceiverPacket::new();

@@ -68,7 +68,7 @@ fn other_lobes_and_coats_are_not_alike() {
     ]);
     let materials = Materials::new(&scene);
     let alike = |other: u32| {
-        let at = |id: u32| materials.at(&scene, MaterialId(id), Vec2::ZERO);
+        let at = |id: u32| materials.at(MaterialId(id), Vec2::ZERO);
         AlikeBsdfs16::new(|lane| (at(if lane == 9 { other } else { 0 }), Vec3::Z)).is_some()
     };
     assert_eq!([0, 1, 2, 3, 4, 5, 6].map(alike), [true, true, false, false, false, false, false]);

@@ -40,7 +40,7 @@ fn weights_are_those_of_the_texture() {
     let scene = scene(vec![first]);
     let materials = Materials::new(&scene);
     for (u, share) in [(0.25, 0.2126), (0.75, 0.7152)] {
-        let albedo = materials.at(&scene, MaterialId(0), Vec2::new(u, 0.5)).albedo(Vec3::Z);
+        let albedo = materials.at(MaterialId(0), Vec2::new(u, 0.5)).albedo(Vec3::Z);
         let expected = PAINT.lerp(Rgb::new(0.9, 0.1, 0.3), share);
         assert!((albedo - expected).abs().max_element() < 1e-4, "{u}: {albedo} {expected}");
     }

@@ -1,48 +1,36 @@
-//! The part of a texture that the cone around a ray covers.
-//!
-//! Paper: Akenine-Möller et al., *Improved Shader and Texture Level of Detail Using Ray Cones*, 2021: the cone's width
-//! over the root of the cosine, times the root of the ratio of the triangle's areas, by texture coordinates and in the
-//! scene.
-//! Deviations: the root of the cosine, where the paper has the cosine: what is covered is as large, and not as long.
+//! Footprints of ray cones on surfaces, over which textures are averaged.
 
 use super::{Surfaces16, World};
 use base::math::{Cone, Vec3x16, lanes_in};
 use glam::Vec3;
 
-/// Minimum cosine between a ray and the normal: beyond it, what the cone covers grows no longer.
-const MIN_COS: f32 = 0.01;
-
 impl World {
-    /// True if some textures are averaged over what a ray stands for.
+    /// Returns true if some textures are averaged over footprints.
     #[inline]
     pub fn filters_textures(&self) -> bool {
         self.materials.filter_textures()
     }
 
-    /// Side, by texture coordinates, of a square as large as what a cone with the given footprint (see
-    /// [`super::Surface`]) covers of a triangle's plane; 0 where that is a point.
+    /// Returns the side, in texture coordinates, of a square as large as the area that a cone with the given footprint
+    /// (see [`super::Surface`]) covers of a triangle's plane.
     #[inline]
     pub(super) fn covered(&self, mesh: u32, primitive: u32, footprint: Vec3) -> f32 {
         let triangle = self.triangles.get(mesh, primitive);
-        let width_sq = footprint.length_squared();
-        let width_cos = triangle.normal.dot(footprint).abs().max(MIN_COS * width_sq.sqrt());
-        match width_sq > 0.0 {
-            true => triangle.uv_scale * (width_sq * width_sq.sqrt() / width_cos).sqrt(),
-            false => 0.0,
-        }
+        scene::texture::covered(triangle.uv_scale, triangle.normal, footprint)
     }
 
-    /// Notes the footprints of rays along `direction` that met `surfaces` in the lanes of `found` within `cone(lane)`.
+    /// Sets the footprints of rays along `direction` that hit `surfaces`, in the lanes of `hit`. `cone` returns the cone
+    /// around a lane's ray.
     #[inline]
     pub fn cover(
         &self,
         surfaces: &mut Surfaces16,
         direction: &Vec3x16,
-        found: u16,
+        hit: u16,
         cone: impl Fn(usize) -> Cone,
     ) {
         if self.filters_textures() {
-            for lane in lanes_in(found) {
+            for lane in lanes_in(hit) {
                 let width = cone(lane).width_at(surfaces.t[lane]);
                 surfaces.footprint.set(lane, direction.get(lane) * width);
             }

@@ -4,7 +4,7 @@ use super::texels::Texels;
 use base::math::{Rgb, luminance};
 use glam::{DVec3, Mat3, Vec2};
 
-/// Index into [`super::Scene::textures`].
+/// Index into [`Textures`](super::Textures).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct TextureId(pub u32);
 
@@ -20,22 +20,22 @@ pub enum Filter {
 /// Extension of the texture beyond [0, 1]².
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Wrap {
-    /// The image again.
+    /// Repetition.
     Repeat,
-    /// The image mirrored at each edge.
+    /// Repetition, mirrored at each edge.
     Mirror,
-    /// The edge texel.
+    /// Colour of the nearest edge texel.
     Clamp,
 }
 
-/// An image over texture coordinates; v = 0 is the bottom row of the image.
+/// An image over texture coordinates. The bottom of the image is at v = 0.
 #[derive(Clone, Debug)]
 pub struct Texture {
     /// Name for reports.
     pub name: String,
-    /// Columns.
+    /// Number of columns.
     pub width: usize,
-    /// Rows.
+    /// Number of rows.
     pub height: usize,
     /// Linear colour, top row first.
     pub texels: Texels,
@@ -43,7 +43,7 @@ pub struct Texture {
     pub filter: Filter,
     /// Extension of the texture beyond [0, 1]².
     pub wrap: Wrap,
-    /// Applied to the texture coordinates (homogeneous) first.
+    /// Matrix that is applied to the homogeneous texture coordinates first.
     pub to_uv: Mat3,
 }
 
@@ -65,15 +65,15 @@ impl Texture {
         }
     }
 
-    /// Line of memory that [`Texture::lookup`] reads at `uv`, among others.
+    /// Returns the number of a square of texels that [`Texture::lookup`] reads at `uv`, for [`Texels::peek`].
     #[inline]
-    pub fn line(&self, uv: Vec2) -> usize {
+    pub fn square(&self, uv: Vec2) -> usize {
         let uv = self.to_uv.transform_point2(uv);
         let (x, y) = (uv.x * self.width as f32, (1.0 - uv.y) * self.height as f32);
-        self.texels.line(self.column(x.floor() as i64), self.row(y.floor() as i64))
+        self.texels.square(self.column(x.floor() as i64), self.row(y.floor() as i64))
     }
 
-    /// Returns the derivatives by u and v of the luminance at `uv`, texels joined linearly.
+    /// Returns the derivatives of the luminance by u and v at `uv`, for linear interpolation.
     pub fn luminance_gradient(&self, uv: Vec2) -> Vec2 {
         let at = self.to_uv.transform_point2(uv);
         let ([x0, x1], fx) = neighbours(at.x * self.width as f32 - 0.5);
@@ -90,7 +90,7 @@ impl Texture {
         Vec2::new(gradient.dot(u), gradient.dot(v))
     }
 
-    /// Returns the mean of the texels; white without any.
+    /// Returns the mean of the texels; white if there are none.
     pub fn mean(&self) -> Rgb {
         if self.texels.is_empty() {
             return Rgb::ONE;
@@ -110,19 +110,20 @@ impl Texture {
     }
 }
 
-/// Numbers of the texels on both sides of a place, and its way from the first to the second. Far out, where numbers
-/// have no fraction, any texels will do; where they have overflowed, too.
+/// Returns the indices of the texels on both sides of a position, and the interpolation weight of the second. The choice
+/// does not matter far out, where floats have no fraction or overflow the integers.
 #[inline]
-fn neighbours(place: f32) -> ([i64; 2], f32) {
-    let floor = place.floor();
+fn neighbours(position: f32) -> ([i64; 2], f32) {
+    let floor = position.floor();
     let first = floor as i64;
-    ([first, first.wrapping_add(1)], (place - floor).max(0.0))
+    ([first, first.wrapping_add(1)], (position - floor).max(0.0))
 }
 
 impl Wrap {
+    /// Returns the index among `n` texels that stands for index `i`.
     #[inline]
     fn index(self, i: i64, n: usize) -> usize {
-        // Nearly always; divisions are slow.
+        // The usual case, without a division.
         if (i as u64) < n as u64 {
             return i as usize;
         }

@@ -1,39 +1,37 @@
-//! Mip maps: means of textures over what rays stand for.
+//! Mip maps: means of textures over the area that a ray stands for.
 //!
 //! Paper: L. Williams, *Pyramidal Parametrics*, 1983.
-//!
-//! Only colours are averaged, and only those in which the light reflected is linear (see [`super::Materials`]):
-//! roughness, opacity, reliefs, and colours that are multiplied with another texture are looked up at the point, so
-//! that the mean over a picture's samples stays what it is.
-//! Deviations: lookups are in one level, the coarsest of texels no larger than half of what each stands for: texels
-//! joined linearly reach twice as far as they are wide, and those as large as what a lookup stands for blur fine
-//! patterns (wallpaper by .7 dB at sixteen samples a pixel). Samples of a pixel hide the step to the next level, and
-//! average along what is covered where that is longer than wide; eight lookups along it would leave .3 dB less error in
-//! a church of tiles, for half more time of its eye pass.
+//! Deviations: a lookup reads one level, the coarsest whose texels are no larger than half of the area that the lookup
+//! stands for. Linear interpolation reaches twice as far as a texel is wide, and the next level blurs fine patterns.
+//! Pixels take several samples, which hide the steps between levels and average along areas that are longer than wide.
 
-use scene::{Texture, TextureId};
+use super::image::{Texture, TextureId};
+use super::textures::Textures;
+use base::math::Rgb;
+use glam::Vec2;
 
-/// Coarser versions of textures.
-#[derive(Clone, Debug, Default)]
-pub(super) struct MipMaps {
-    /// By texture; none where it is not averaged.
+/// Textures, some of them with coarser versions.
+#[derive(Clone, Debug)]
+pub struct MipMaps {
+    textures: Textures,
+    /// Coarser versions by texture; empty if no texture has any.
     pyramids: Vec<Pyramid>,
 }
 
 /// Coarser versions of a texture.
 #[derive(Clone, Debug, Default)]
 struct Pyramid {
-    /// Each half as wide and high as that before it, the first as the texture.
+    /// Textures, each half as wide and high as the one before; the first is half as wide as the original.
     levels: Vec<Texture>,
     /// Half the number of texels along the side of a unit square of texture coordinates.
     half_texels: f32,
 }
 
 impl MipMaps {
-    /// Makes those of the textures `wanted`.
-    pub fn new(textures: &[Texture], wanted: impl Iterator<Item = TextureId>) -> MipMaps {
+    /// Shares `textures`, and computes coarser versions of the `filtered` ones.
+    pub fn new(textures: &Textures, filtered: impl Iterator<Item = TextureId>) -> MipMaps {
         let mut pyramids: Vec<Pyramid> = Vec::new();
-        for TextureId(id) in wanted {
+        for TextureId(id) in filtered {
             let Some(texture) = textures.get(id as usize).filter(|t| t.texels.len() > 1) else { continue };
             pyramids.resize(textures.len(), Pyramid::default());
             let pyramid = &mut pyramids[id as usize];
@@ -42,19 +40,36 @@ impl MipMaps {
                 *pyramid = Pyramid { levels: coarser(texture), half_texels: 0.5 * texels.sqrt() };
             }
         }
-        MipMaps { pyramids }
+        MipMaps { textures: textures.clone(), pyramids }
     }
 
-    /// True if there are none.
-    pub fn is_empty(&self) -> bool {
-        self.pyramids.is_empty()
-    }
-
-    /// Version of a texture for lookups that stand for a square of side `covered` by texture coordinates.
+    /// Returns the textures at full resolution.
     #[inline]
-    pub fn level<'a>(&'a self, finest: &'a Texture, id: TextureId, covered: f32) -> &'a Texture {
+    pub fn textures(&self) -> &Textures {
+        &self.textures
+    }
+
+    /// Returns true if some textures have coarser versions.
+    #[inline]
+    pub fn filter(&self) -> bool {
+        !self.pyramids.is_empty()
+    }
+
+    /// Returns the colour of a texture at `uv`, averaged over a square of side `covered` in texture coordinates if the
+    /// texture has coarser versions; white if there is no such texture.
+    #[inline]
+    pub fn lookup(&self, id: TextureId, uv: Vec2, covered: f32) -> Rgb {
+        self.textures.by_id(id).map_or(Rgb::ONE, |texture| match covered > 0.0 {
+            true => self.level(texture, id, covered).lookup(uv),
+            false => texture.lookup(uv),
+        })
+    }
+
+    /// Returns the version of a texture for lookups that stand for a square of side `covered` in texture coordinates.
+    #[inline]
+    fn level<'a>(&'a self, finest: &'a Texture, id: TextureId, covered: f32) -> &'a Texture {
         let Some(Pyramid { levels, half_texels }) = self.pyramids.get(id.0 as usize) else { return finest };
-        // The binary exponent is the whole part of the logarithm.
+        // The binary exponent is the integer part of the logarithm.
         let level = ((covered * half_texels).max(1.0).to_bits() >> 23) as usize - 127;
         match level.min(levels.len()) {
             0 => finest,
@@ -63,7 +78,7 @@ impl MipMaps {
     }
 }
 
-/// Levels of a texture from half its size on down to one texel.
+/// Returns the levels of a texture, from half its size down to one texel.
 fn coarser(texture: &Texture) -> Vec<Texture> {
     let mut levels: Vec<Texture> = Vec::new();
     loop {
@@ -81,9 +96,8 @@ fn coarser(texture: &Texture) -> Vec<Texture> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use base::math::Rgb;
-    use glam::{Mat3, Vec2};
-    use scene::{Filter, Texels, Wrap};
+    use crate::texture::{Filter, Texels, Wrap};
+    use glam::Mat3;
 
     /// 64 x 32 texels, black and white in turn, and red in the lower half.
     fn checker() -> Texture {
@@ -101,7 +115,7 @@ mod tests {
     #[test]
     fn levels_have_texels_half_as_large_as_what_is_covered() {
         let texture = checker();
-        let maps = MipMaps::new(std::slice::from_ref(&texture), [TextureId(0)].into_iter());
+        let maps = MipMaps::new(&vec![texture.clone()].into(), [TextureId(0)].into_iter());
         let levels: Vec<usize> = maps.pyramids[0].levels.iter().map(|level| level.texels.len()).collect();
         assert_eq!(levels, [512, 128, 32, 8, 2, 1]);
         // A texel is a square of this side, in the mean: 128 by 32 of them a unit.
@@ -117,12 +131,12 @@ mod tests {
     #[test]
     fn levels_are_the_means_of_what_their_texels_cover() {
         let texture = checker();
-        let maps = MipMaps::new(std::slice::from_ref(&texture), [TextureId(0)].into_iter());
+        let maps = MipMaps::new(&vec![texture.clone()].into(), [TextureId(0)].into_iter());
         for covered in [8.0, 16.0, 32.0] {
             for i in 0..20 {
                 let at = |y: f32| {
                     let uv = Vec2::new(0.0317 * i as f32, y);
-                    maps.level(&texture, TextureId(0), covered / 64.0).lookup(uv)
+                    maps.lookup(TextureId(0), uv, covered / 64.0)
                 };
                 let near = |found: Rgb, expected: Rgb| (found - expected).abs().max_element() < 1e-5;
                 assert!(near(at(0.75), Rgb::splat(0.5)) && near(at(0.25), Rgb::X * 0.5), "{covered} {i}");

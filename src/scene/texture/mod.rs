@@ -1,0 +1,19 @@
+//! Textures: the layout of texels in memory, interpolation between them, their mip maps, and the part of a texture that
+//! a ray stands for.
+//!
+//! The room is a folder of this crate and not a crate of its own: the scene holds the textures, everything else here
+//! needs only `base`, and all crates that look textures up see the scene already. [`Textures`] is shared, so materials
+//! and emitters hold what they look up and copy no texels.
+
+mod coverage;
+mod halving;
+mod image;
+mod mip_maps;
+mod texels;
+mod textures;
+
+pub use coverage::{covered, uv_scale};
+pub use image::{Filter, Texture, TextureId, Wrap};
+pub use mip_maps::MipMaps;
+pub use texels::Texels;
+pub use textures::Textures;
