@@ -1,9 +1,8 @@
 //! Materials with the same lobes and coat, at sixteen points at once: [`Bsdf::eval`] and [`Bsdf::bound`] as loops over
 //! lanes that compile to vector code.
 
-use super::bsdf::Bsdf;
-use super::lobe::{Directions16, FacetBounds16, LobeLanes, MAX_LOBES};
-use super::model::Model;
+use super::lobe::{DirectionBounds16, Directions16, FacetBounds16, LobeLanes, MAX_LOBES};
+use super::model::{Bsdf, Model};
 use base::math::{F32x16, LANES, Vec3x16};
 use glam::Vec3;
 
@@ -15,17 +14,6 @@ pub struct AlikeBsdfs16<'m> {
     /// BRDFs of the bases, for light that has passed the coat on its way in.
     base: Vec3x16,
     lobes: [LobeLanes; MAX_LOBES],
-}
-
-/// Bounds of the directions towards light, by lane; see [`super::DirectionBound`].
-#[derive(Clone, Copy, Debug, Default)]
-pub struct DirectionBounds16 {
-    /// Maximum cosine to the normal, at most 1.
-    pub cos_i_max: F32x16,
-    /// Minimum cosine to the normal.
-    pub cos_i_min: F32x16,
-    /// Maximum cosine to the mirror direction of `wo`.
-    pub cos_mirror_max: F32x16,
 }
 
 impl<'m> AlikeBsdfs16<'m> {
@@ -42,7 +30,7 @@ impl<'m> AlikeBsdfs16<'m> {
         };
         for lane in 0..LANES {
             let (bsdf, wo) = at(lane);
-            if !bsdf.same_lobes(&first) || bsdf.coat() != first.coat() || bsdf.model.transmits {
+            if !bsdf.same_lobes(&first) || bsdf.coat() != first.coat() || bsdf.model.kinds.transmit {
                 return None;
             }
             all.wo.set(lane, wo);
@@ -61,7 +49,7 @@ impl<'m> AlikeBsdfs16<'m> {
     #[inline]
     pub fn response(&self, wi: &Vec3x16) -> Vec3x16 {
         let mut response = self.base_times(&self.coat_transmittance(&wi.z));
-        if self.model.smooth_lobes {
+        if self.model.kinds.smooth {
             let directions = Directions16::new(&self.wo, wi);
             for (slot, lobe) in self.model.lobes.iter().enumerate() {
                 lobe.add_value16(&self.lobes[slot], &directions, &mut response);
@@ -83,7 +71,7 @@ impl<'m> AlikeBsdfs16<'m> {
             let cos = if cos_max[l] > 0.0 { cos_max[l] } else { 0.0 };
             most.set(l, most.get(l) * cos);
         }
-        if self.model.smooth_lobes {
+        if self.model.kinds.smooth {
             let facets = FacetBounds16::new(&self.wo.z, bounds);
             for (slot, lobe) in self.model.lobes.iter().enumerate() {
                 lobe.add_bound16(&self.lobes[slot], &facets, &mut most);

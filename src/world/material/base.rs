@@ -6,8 +6,8 @@
 //! spaced from grazing to normal incidence, linear between; single scattering only; the internal reflectance is the
 //! plain mean over those 64 cosines.
 
+use super::albedo::albedo;
 use super::fresnel;
-use super::lobe::rough_albedo;
 use super::microfacet::Microfacets;
 use super::table::{ANGLES, AngleTable, direction, rule};
 use base::math::{F32x16, LANES, Rgb};
@@ -42,7 +42,7 @@ pub(super) enum CoatInterface {
 }
 
 impl PartialEq for CoatInterface {
-    /// True if the same light reaches the base.
+    /// Returns true if the same light reaches the base.
     fn eq(&self, other: &CoatInterface) -> bool {
         match (self, other) {
             (CoatInterface::None, CoatInterface::None) | (CoatInterface::Burley, CoatInterface::Burley) => {
@@ -117,7 +117,7 @@ impl BaseModel {
         BaseModel { interface, mean_transmittance, internal_reflectance, factor, nonlinear: coat.nonlinear }
     }
 
-    /// True if the BRDF is proportional to the albedo.
+    /// Returns true if the BRDF is proportional to the albedo.
     pub fn is_linear(&self) -> bool {
         !self.nonlinear || self.internal_reflectance == 0.0
     }
@@ -161,7 +161,7 @@ impl RoughCoat {
             max_transmittance.0[i] = max_transmittance.0[i].max(max_transmittance.0[i - 1]);
         }
         let inside = Fresnel::Dielectric(1.0 / eta);
-        let reflected = AngleTable::new(|wo| rough_albedo(facets, &inside, wo, inside_rule).x);
+        let reflected = AngleTable::new(|wo| albedo(facets, &inside, wo, inside_rule).x);
         let internal_reflectance =
             (0..ANGLES).map(|i| reflected.0[i] * direction(i).z).sum::<f32>() * 2.0 / ANGLES as f32;
         RoughCoat {

@@ -2,27 +2,10 @@
 //!
 //! Paper: Walter et al., *Lightcuts*, 2005, section 4.1, for the use made of such bounds.
 
-use super::bsdf::Bsdf;
-use super::lobe::FacetBound;
+use super::lobe::{DirectionBound, FacetBound};
+use super::model::Bsdf;
 use base::math::Rgb;
 use glam::Vec3;
-
-/// Bounds of a set of directions towards light. The normal is the one on the side of `wo`: for a
-/// two-sided surface seen from behind, the reversed shading normal.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct DirectionBound {
-    /// No direction's cosine to the normal is larger; where this is <= 0 nothing is reflected.
-    pub cos_i_max: f32,
-    /// No direction's cosine to the normal is smaller. Anything <= 0 means that grazing light is possible.
-    pub cos_i_min: f32,
-    /// No direction's cosine to the mirror direction of `wo` is larger.
-    pub cos_mirror_max: f32,
-}
-
-impl DirectionBound {
-    /// Factor that covers the rounding of the reflectance and of D at the tip of a narrow lobe.
-    pub(super) const WIDER: f32 = 1.000_01;
-}
 
 impl Bsdf<'_> {
     /// Returns an upper bound, per channel, of `eval(wo, wi)` · cos θ_i over all `wi` within `bound` on the
@@ -39,7 +22,7 @@ impl Bsdf<'_> {
         }
         let coat = &self.model.base.interface;
         let mut most = self.base * (cos_max * coat.transmittance(cos_o) * coat.max_transmittance(cos_max));
-        if self.model.smooth_lobes {
+        if self.model.kinds.smooth {
             let facets = FacetBound::new(cos_o, cos_max, bound);
             for (slot, lobe) in self.model.lobes.iter().enumerate() {
                 most += lobe.bound(self.scales[slot], &facets);

@@ -3,30 +3,11 @@
 //! Units: `eval` is 1/sr, without the cosine; `pdf` is per solid angle.
 
 use super::lobe::{Directions, DullLobe, LobeModel, MAX_LOBES, ReflectedLobe, mean};
-use super::model::Model;
+use super::model::Bsdf;
 use base::math::Rgb;
 use glam::Vec3;
 use scene::MaterialId;
 use std::f32::consts::{FRAC_1_PI, PI};
-
-/// Material at one point of a surface: textures are looked up, the rest is shared with [`super::Materials`].
-#[derive(Clone, Copy, Debug)]
-pub struct Bsdf<'m> {
-    pub(super) model: &'m Model,
-    /// BRDF of the base, less the coat's transmittances by angle.
-    pub(super) base: Rgb,
-    /// Factors on the lobes; zero beyond them.
-    pub(super) scales: [Rgb; MAX_LOBES],
-}
-
-/// Colours of a material.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Colours<T> {
-    /// Albedo or BRDF of the base.
-    pub base: T,
-    /// Factors on the lobes.
-    pub scales: [T; MAX_LOBES],
-}
 
 /// Some of the lobes of a BSDF.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -46,7 +27,7 @@ pub(super) struct Outgoing {
 }
 
 impl LobeSet {
-    /// True if there is none.
+    /// Returns true if there is none.
     #[inline]
     pub fn is_empty(self) -> bool {
         self.0 == 0
@@ -77,7 +58,7 @@ impl<'m> Bsdf<'m> {
     pub fn eval_pdf(&self, wo: Vec3, wi: Vec3) -> (Rgb, f32) {
         let side = self.side(wo);
         let (wo, wi) = (Vec3::new(wo.x, wo.y, wo.z * side), Vec3::new(wi.x, wi.y, wi.z * side));
-        if !(wo.z > 0.0 && wi.z > 0.0 || self.model.transmits) {
+        if !(wo.z > 0.0 && wi.z > 0.0 || self.model.kinds.transmit) {
             return (Rgb::ZERO, 0.0);
         }
         if self.is_lambert() {
@@ -86,24 +67,24 @@ impl<'m> Bsdf<'m> {
         self.eval_pdf_layered(&self.outgoing(wo), wi)
     }
 
-    /// True if light is scattered into more than isolated directions.
+    /// Returns true if light is scattered into more than isolated directions.
     #[inline]
     pub fn has_smooth(&self) -> bool {
         self.base != Rgb::ZERO || self.has_smooth_lobe()
     }
 
-    /// True if part of the light is reflected as by a mirror or refracted as by smooth glass.
+    /// Returns true if part of the light is reflected as by a mirror or refracted as by smooth glass.
     #[inline]
     pub fn has_delta(&self) -> bool {
-        self.model.delta_lobes
+        self.model.kinds.delta
     }
 
-    /// True if part of the light goes on as by a mirror or refracted, in another direction than it comes in.
+    /// Returns true if part of the light goes on as by a mirror or refracted, in another direction than it comes in.
     pub fn bends_light(&self) -> bool {
         self.any_lobe(LobeModel::bends)
     }
 
-    /// True if part of the light is reflected by lobes too sharp to pass for diffuse.
+    /// Returns true if part of the light is reflected by lobes too sharp to pass for diffuse.
     pub fn is_glossy(&self) -> bool {
         self.any_lobe(LobeModel::is_glossy)
     }
@@ -116,12 +97,12 @@ impl<'m> Bsdf<'m> {
         glossy.then(|| Bsdf { base: Rgb::ZERO, ..*self }.without(dull))
     }
 
-    /// True if part of the light goes on to the other side in more than isolated directions.
+    /// Returns true if part of the light goes on to the other side in more than isolated directions.
     pub fn scatters_across(&self) -> bool {
-        self.model.transmits && self.any_lobe(LobeModel::scatters_across)
+        self.model.kinds.transmit && self.any_lobe(LobeModel::scatters_across)
     }
 
-    /// True if part of the light passes straight through the surface.
+    /// Returns true if part of the light passes straight through the surface.
     pub fn passes_straight(&self) -> bool {
         self.any_lobe(LobeModel::passes_straight)
     }
@@ -149,7 +130,7 @@ impl<'m> Bsdf<'m> {
     #[inline(always)]
     fn lobes(&self, is_such: impl Fn(&LobeModel) -> bool) -> LobeSet {
         let mut such = 0;
-        if self.model.smooth_lobes {
+        if self.model.kinds.smooth {
             for (slot, lobe) in self.model.lobes.iter().enumerate() {
                 such |= u8::from(self.scales[slot] != Rgb::ZERO && is_such(lobe)) << slot;
             }
@@ -182,7 +163,7 @@ impl<'m> Bsdf<'m> {
         value
     }
 
-    /// True if the material is Lambertian and nothing else.
+    /// Returns true if the material is Lambertian and nothing else.
     #[inline]
     pub(super) fn is_lambert(&self) -> bool {
         self.model.lambert
@@ -208,7 +189,7 @@ impl<'m> Bsdf<'m> {
         self.is_lambert().then(|| self.base * PI)
     }
 
-    /// True if the side away from the normal behaves as the front does.
+    /// Returns true if the side away from the normal behaves as the front does.
     #[inline]
     pub fn two_sided(&self) -> bool {
         self.model.two_sided
@@ -222,10 +203,10 @@ impl<'m> Bsdf<'m> {
 
     /// True of [`super::Materials::average`] where the roughness is textured.
     pub fn is_of_mean_roughness(&self) -> bool {
-        self.model.levels.is_some()
+        self.model.mean_roughness
     }
 
-    /// True if the lobes agree but for their factors.
+    /// Returns true if the lobes agree but for their factors.
     #[inline]
     pub fn same_lobes(&self, other: &Bsdf) -> bool {
         self.model.lobe_list == other.model.lobe_list
@@ -315,7 +296,7 @@ impl<'m> Bsdf<'m> {
         mean
     }
 
-    /// True if `is_such` of a lobe that scatters anything.
+    /// Returns true if `is_such` of a lobe that scatters anything.
     #[inline(always)]
     fn any_lobe(&self, is_such: impl Fn(&LobeModel) -> bool) -> bool {
         let mut found = false;
@@ -327,14 +308,14 @@ impl<'m> Bsdf<'m> {
 
     #[inline]
     fn has_smooth_lobe(&self) -> bool {
-        self.model.smooth_lobes && self.any_lobe(|lobe| !lobe.is_delta())
+        self.model.kinds.smooth && self.any_lobe(|lobe| !lobe.is_delta())
     }
 
     /// Returns the factor that turns the z of directions to the side of the normal: -1 if a two-sided surface
     /// is seen from behind.
     #[inline]
     pub(super) fn side(&self, wo: Vec3) -> f32 {
-        if wo.z < 0.0 && self.model.two_sided && !self.model.transmits { -1.0 } else { 1.0 }
+        if wo.z < 0.0 && self.model.two_sided && !self.model.kinds.transmit { -1.0 } else { 1.0 }
     }
 
     /// Computes the part of [`Bsdf::eval_pdf_layered`] and of sampling that depends on `wo` alone.
@@ -384,7 +365,7 @@ impl<'m> Bsdf<'m> {
 
     #[inline(always)]
     pub(super) fn eval_pdf_layered(&self, outgoing: &Outgoing, wi: Vec3) -> (Rgb, f32) {
-        if !self.model.smooth_lobes {
+        if !self.model.kinds.smooth {
             return self.eval_pdf_base(outgoing, wi);
         }
         match self.directions(outgoing.wo, wi) {
@@ -396,7 +377,7 @@ impl<'m> Bsdf<'m> {
     #[inline(always)]
     fn directions(&self, wo: Vec3, wi: Vec3) -> Option<Directions> {
         // Of opposite directions refraction makes no use of the facet between them.
-        let opposite = || self.model.transmits.then_some(Directions { wo, wi, half: Vec3::Z });
+        let opposite = || self.model.kinds.transmit.then_some(Directions { wo, wi, half: Vec3::Z });
         Directions::new(wo, wi).or_else(opposite)
     }
 

@@ -10,13 +10,17 @@
 //! All directions are in the local shading frame (z = shading normal), point away from the surface and have
 //! unit length: `wo` towards the eye (or the previous vertex of the path), `wi` towards the light.
 
+mod albedo;
 mod alike16;
 mod base;
 mod bound;
 mod bsdf;
+mod build;
+mod colours;
 mod fresnel;
 mod layers;
 mod lobe;
+mod materials;
 mod microfacet;
 mod model;
 mod packet;
@@ -25,12 +29,13 @@ mod roughness;
 mod sample;
 mod straight;
 mod table;
+mod tables;
 
-pub use alike16::{AlikeBsdfs16, DirectionBounds16};
-pub use bound::DirectionBound;
-pub use bsdf::{Bsdf, LobeSet};
-pub use lobe::{DullLobe, LobeShape};
-pub use model::Materials;
+pub use alike16::AlikeBsdfs16;
+pub use bsdf::LobeSet;
+pub use lobe::{DirectionBound, DirectionBounds16, DullLobe, LobeShape};
+pub use materials::Materials;
+pub use model::Bsdf;
 pub use packet::{BsdfSamples16, Bsdfs16};
 pub use straight::LastStraight;
 

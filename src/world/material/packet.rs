@@ -1,7 +1,7 @@
 //! Materials at sixteen points at once: Lambertian ones, most of most scenes, in all lanes together, the others
 //! one after the other.
 
-use super::bsdf::Bsdf;
+use super::model::Bsdf;
 use base::math::{F32x16, LANES, Rgb, U32x16, Vec2x16, Vec3x16, lanes_in, mask_of};
 use base::sampling::cosine_hemisphere;
 use glam::Vec3;
@@ -22,7 +22,7 @@ pub struct Bsdfs16<'m> {
     smooth: u16,
 }
 
-/// Sampled directions; see [`super::sample::BsdfSample`] for the members.
+/// Sampled directions; see [`super::lobe::BsdfSample`] for the members.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct BsdfSamples16 {
     /// Unit directions.

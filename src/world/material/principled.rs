@@ -1,50 +1,52 @@
-//! Principled materials as a base and lobes: the colours of these by the material's own parameters.
+//! Principled materials as a base and lobes, whose colours follow from the parameters of the material.
 //!
-//! Deviations: of more than [`MAX_LOBES`] lobes, which need several textures that mix metal, glass, varnish and sheen
-//! at one place, the last are left out.
+//! Deviations: the last of more than [`MAX_LOBES`] lobes are left out. Only textures that mix metal, glass, varnish and
+//! sheen at one point need as many.
 
-use super::bsdf::Colours;
 use super::lobe::{
     AnisotropicLobe, ClearCoat, Grazing, GrazingKind, LobeModel, MAX_LOBES, Passage, RoughInterface,
     RoughLobe,
 };
 use super::microfacet::Microfacets;
-use super::roughness::{self, Level};
+use super::model::Colours;
+use super::roughness::RoughnessValues;
 use base::math::{Rgb, luminance};
-use scene::{Distribution, Fresnel, Principled, Share, Texture, TextureId};
+use scene::{Distribution, Fresnel, Principled, Share, TextureId};
 
-/// Minimum roughness α, that of Mitsuba.
+/// Minimum roughness α, as in Mitsuba.
 const MIN_ALPHA: f32 = 1e-3;
 
-/// A principled material without its textures' values.
+/// Colours of a principled material before textures are looked up.
 #[derive(Clone, Debug)]
-pub(super) struct PrincipledModel {
+pub(super) struct PrincipledColours {
     parameters: Box<Principled>,
-    /// Share of the light that each lobe has.
-    parts: Vec<Part>,
+    /// Kind of each lobe, which gives the factor on it.
+    lobes: Vec<PrincipledLobe>,
 }
 
-/// Lobe of a principled material, by its factor.
+/// Kind of a principled material's lobe.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Part {
+enum PrincipledLobe {
     /// Reflection by the dielectric, without hue.
     Dielectric,
-    /// Reflection with a hue, by metal too: all of it, where it is the same everywhere.
+    /// Reflection with a hue, by metal and tinted dielectric, if it is constant.
     Hued,
-    /// The same, the part of it that is there at normal incidence and vanishes at grazing incidence.
+    /// Part of the textured reflection with a hue that vanishes at grazing incidence.
     HuedNormal,
-    /// The rest.
+    /// Part of the textured reflection with a hue that vanishes at normal incidence.
     HuedEdge,
+    /// Refraction by the rough interface.
     Transmission,
     /// Reflection of light inside.
     Inside,
+    /// Retroreflection of the rough diffuse base.
     Retro,
     ClearCoat,
     Sheen,
 }
 
-/// Parameters at a place.
-struct Values {
+/// Parameters at a point.
+struct PrincipledValues {
     colour: Rgb,
     /// Colour of the same hue and a luminance of 1.
     hue: Rgb,
@@ -56,14 +58,15 @@ struct Values {
     clearcoat: f32,
 }
 
-impl Values {
-    fn of(p: &Principled, texel: impl Fn(TextureId) -> Rgb) -> Values {
+impl PrincipledValues {
+    /// Evaluates the parameters; `texel` returns the value of a texture.
+    fn of(p: &Principled, texel: impl Fn(TextureId) -> Rgb) -> PrincipledValues {
         let share = |share: &Share| share.value(|id| luminance(texel(id))).clamp(0.0, 1.0);
         let colour = p.base_color.value(&texel).max(Rgb::ZERO);
-        let of_colour = luminance(colour);
-        Values {
+        let brightness = luminance(colour);
+        PrincipledValues {
             colour,
-            hue: if of_colour > 0.0 { colour / of_colour } else { Rgb::ONE },
+            hue: if brightness > 0.0 { colour / brightness } else { Rgb::ONE },
             metallic: share(&p.metallic),
             spec_tint: share(&p.spec_tint),
             spec_trans: share(&p.spec_trans),
@@ -73,31 +76,37 @@ impl Values {
         }
     }
 
+    /// Returns the albedo of the diffuse base.
     fn diffuse(&self) -> Rgb {
         self.colour * ((1.0 - self.metallic) * (1.0 - self.spec_trans))
     }
 
+    /// Returns the reflectance with a hue at normal incidence.
     fn hued_normal(&self, eta: f32) -> Rgb {
         let f0 = ((eta - 1.0) / (eta + 1.0)).powi(2);
         self.colour * self.metallic + self.hue * ((1.0 - self.metallic) * self.spec_tint * f0)
     }
 
+    /// Returns the reflectance with a hue at grazing incidence.
     fn hued_edge(&self) -> f32 {
         self.metallic + (1.0 - self.metallic) * self.spec_tint
     }
 
-    fn factor(&self, part: Part, eta: f32) -> Rgb {
+    /// Returns the factor on a lobe.
+    fn factor(&self, lobe: PrincipledLobe, eta: f32) -> Rgb {
         let transmitted = (1.0 - self.metallic) * self.spec_trans;
-        match part {
-            Part::Dielectric => Rgb::splat((1.0 - self.metallic) * (1.0 - self.spec_tint)),
-            Part::Hued => Rgb::ONE,
-            Part::HuedNormal => self.hued_normal(eta),
-            Part::HuedEdge => Rgb::splat(self.hued_edge()),
-            Part::Transmission => Rgb::from_array(self.colour.to_array().map(f32::sqrt)) * transmitted,
-            Part::Inside => Rgb::splat(transmitted),
-            Part::Retro => self.diffuse(),
-            Part::ClearCoat => Rgb::splat(self.clearcoat),
-            Part::Sheen => {
+        match lobe {
+            PrincipledLobe::Dielectric => Rgb::splat((1.0 - self.metallic) * (1.0 - self.spec_tint)),
+            PrincipledLobe::Hued => Rgb::ONE,
+            PrincipledLobe::HuedNormal => self.hued_normal(eta),
+            PrincipledLobe::HuedEdge => Rgb::splat(self.hued_edge()),
+            PrincipledLobe::Transmission => {
+                Rgb::from_array(self.colour.to_array().map(f32::sqrt)) * transmitted
+            }
+            PrincipledLobe::Inside => Rgb::splat(transmitted),
+            PrincipledLobe::Retro => self.diffuse(),
+            PrincipledLobe::ClearCoat => Rgb::splat(self.clearcoat),
+            PrincipledLobe::Sheen => {
                 let hue = Rgb::ONE.lerp(self.hue, self.sheen_tint);
                 hue * (self.sheen * (1.0 - self.metallic))
             }
@@ -105,90 +114,125 @@ impl Values {
     }
 }
 
-impl PrincipledModel {
-    /// Prepares a material, for a level of its roughness if that is textured; returns its lobes, too, most of which
-    /// lack their tables, and at most `most` of them.
-    pub fn new(
-        p: &Principled,
-        level: Option<(TextureId, Level)>,
-        textures: &[Texture],
-        most: usize,
-    ) -> (PrincipledModel, Vec<LobeModel>) {
-        let roughness = roughness::alpha(&p.roughness, level, textures);
-        let facets = Microfacets::new(Distribution::Ggx, (roughness * roughness).max(MIN_ALPHA));
-        let some = |share: Share| share != Share::Constant(0.0);
-        let not_all = |share: Share| share != Share::Constant(1.0);
-        let (has_hue, eta) = (some(p.metallic) || some(p.spec_tint), p.eta);
+/// Lobes of a principled material, of one roughness.
+struct LobeBuilder<'a> {
+    parameters: &'a Principled,
+    /// Square root of α.
+    roughness: f32,
+    facets: Microfacets,
+}
+
+impl LobeBuilder<'_> {
+    /// Builds all lobes. Most lack their tables of albedo.
+    fn all(&self) -> Vec<(PrincipledLobe, LobeModel)> {
+        let p = self.parameters;
         let is_dielectric = not_all(p.metallic);
-        let aspect = (1.0 - 0.9 * p.anisotropic).sqrt();
-        let alpha = [facets.alpha / aspect, facets.alpha * aspect].map(|alpha| alpha.max(MIN_ALPHA));
-        let rough = |fresnel| match p.anisotropic {
-            0.0 => LobeModel::Rough(RoughLobe {
-                facets,
-                fresnel,
-                max_reflectance: None,
-                albedo: None,
-                white: None,
-            }),
-            _ => LobeModel::Anisotropic(AnisotropicLobe::new(facets.distribution, alpha, fresnel)),
-        };
-        let interface = |passage, inside_only| {
-            LobeModel::RoughInterface(RoughInterface { facets, eta, passage, inside_only })
-        };
-        let mut all = Vec::new();
-        if is_dielectric && not_all(p.spec_tint) {
-            all.push((Part::Dielectric, rough(Fresnel::Dielectric(eta))));
-        }
-        let is_even = !p.base_color.is_textured() && !p.metallic.is_textured() && !p.spec_tint.is_textured();
-        if has_hue && is_even {
-            let values = Values::of(p, |_| Rgb::ONE);
-            let (normal, edge) = (values.hued_normal(eta), values.hued_edge());
-            all.push((Part::Hued, rough(Fresnel::Schlick { normal, edge })));
-        } else if has_hue {
-            let schlick = |normal, edge| rough(Fresnel::Schlick { normal: Rgb::splat(normal), edge });
-            all.extend([(Part::HuedNormal, schlick(1.0, 0.0)), (Part::HuedEdge, schlick(0.0, 1.0))]);
-        }
-        if is_dielectric && some(p.spec_trans) && eta != 1.0 {
-            all.push((Part::Transmission, interface(Passage::Refraction, false)));
-            all.push((Part::Inside, interface(Passage::Reflection, true)));
+        let mut all = self.reflection();
+        if is_dielectric && some(p.spec_trans) && p.eta != 1.0 {
+            all.push((PrincipledLobe::Transmission, self.interface(Passage::Refraction, false)));
+            all.push((PrincipledLobe::Inside, self.interface(Passage::Reflection, true)));
         }
         if is_dielectric && not_all(p.spec_trans) {
-            all.push((Part::Retro, LobeModel::Grazing(Grazing::new(GrazingKind::Retro { roughness }))));
+            let kind = GrazingKind::Retro { roughness: self.roughness };
+            all.push((PrincipledLobe::Retro, LobeModel::Grazing(Grazing::new(kind))));
         }
         if some(p.clearcoat) {
-            all.push((Part::ClearCoat, LobeModel::ClearCoat(ClearCoat::new(p.clearcoat_gloss))));
+            all.push((PrincipledLobe::ClearCoat, LobeModel::ClearCoat(ClearCoat::new(p.clearcoat_gloss))));
         }
         if is_dielectric && some(p.sheen) {
-            all.push((Part::Sheen, LobeModel::Grazing(Grazing::new(GrazingKind::Sheen))));
+            all.push((PrincipledLobe::Sheen, LobeModel::Grazing(Grazing::new(GrazingKind::Sheen))));
         }
-        all.truncate(most);
-        let (parts, lobes) = all.into_iter().unzip();
-        (PrincipledModel { parameters: Box::new(p.clone()), parts }, lobes)
+        all
     }
 
-    /// True if any colour is textured.
+    /// Builds the lobes of specular reflection, without and with a hue.
+    fn reflection(&self) -> Vec<(PrincipledLobe, LobeModel)> {
+        let p = self.parameters;
+        let mut all = Vec::new();
+        if not_all(p.metallic) && not_all(p.spec_tint) {
+            all.push((PrincipledLobe::Dielectric, self.rough(Fresnel::Dielectric(p.eta))));
+        }
+        let has_hue = some(p.metallic) || some(p.spec_tint);
+        let is_constant =
+            !p.base_color.is_textured() && !p.metallic.is_textured() && !p.spec_tint.is_textured();
+        if has_hue && is_constant {
+            let values = PrincipledValues::of(p, |_| Rgb::ONE);
+            let (normal, edge) = (values.hued_normal(p.eta), values.hued_edge());
+            all.push((PrincipledLobe::Hued, self.rough(Fresnel::Schlick { normal, edge })));
+        } else if has_hue {
+            let schlick = |normal, edge| self.rough(Fresnel::Schlick { normal: Rgb::splat(normal), edge });
+            all.push((PrincipledLobe::HuedNormal, schlick(1.0, 0.0)));
+            all.push((PrincipledLobe::HuedEdge, schlick(0.0, 1.0)));
+        }
+        all
+    }
+
+    /// Builds a lobe of microfacet reflection.
+    fn rough(&self, fresnel: Fresnel) -> LobeModel {
+        let (anisotropic, facets) = (self.parameters.anisotropic, self.facets);
+        if anisotropic == 0.0 {
+            return LobeModel::Rough(RoughLobe::new(facets, fresnel));
+        }
+        let aspect = (1.0 - 0.9 * anisotropic).sqrt();
+        let alpha = [facets.alpha / aspect, facets.alpha * aspect].map(|alpha| alpha.max(MIN_ALPHA));
+        LobeModel::Anisotropic(AnisotropicLobe::new(facets.distribution, alpha, fresnel))
+    }
+
+    /// Builds a lobe of the rough dielectric interface.
+    fn interface(&self, passage: Passage, inside_only: bool) -> LobeModel {
+        let (facets, eta) = (self.facets, self.parameters.eta);
+        LobeModel::RoughInterface(RoughInterface { facets, eta, passage, inside_only })
+    }
+}
+
+/// Returns true if a share may differ from 0.
+fn some(share: Share) -> bool {
+    share != Share::Constant(0.0)
+}
+
+/// Returns true if a share may differ from 1.
+fn not_all(share: Share) -> bool {
+    share != Share::Constant(1.0)
+}
+
+impl PrincipledColours {
+    /// Prepares a material; returns its lobes, too, at most `most` of them. Most lack their tables of albedo.
+    pub fn new(
+        parameters: &Principled,
+        roughness: RoughnessValues,
+        most: usize,
+    ) -> (PrincipledColours, Vec<LobeModel>) {
+        let roughness = roughness.alpha(&parameters.roughness);
+        let facets = Microfacets::new(Distribution::Ggx, (roughness * roughness).max(MIN_ALPHA));
+        let mut all = LobeBuilder { parameters, roughness, facets }.all();
+        all.truncate(most);
+        let (kinds, lobes) = all.into_iter().unzip();
+        (PrincipledColours { parameters: Box::new(parameters.clone()), lobes: kinds }, lobes)
+    }
+
+    /// Returns true if any colour is textured.
     pub fn is_textured(&self) -> bool {
         let mut colours = self.parameters.clone();
         colours.roughness = Share::Constant(0.0);
         colours.is_textured()
     }
 
-    /// True if the colours are linear in the texels of all textures together.
+    /// Returns true if the colours are linear in the texels of all textures together.
     pub fn is_linear(&self) -> bool {
         let p = &self.parameters;
         let none = |share: Share| share == Share::Constant(0.0);
         let shares = [p.metallic, p.sheen, p.clearcoat];
-        // The hue is no linear function of the colour.
+        // The hue is not linear in the colour.
         let without_hue = none(p.spec_tint) && (none(p.sheen_tint) || none(p.sheen));
         without_hue && none(p.spec_trans) && !shares.iter().any(Share::is_textured)
     }
 
-    /// Returns albedo of the base and factors on the lobes where each texture has the value `texel` of it.
+    /// Returns the albedo of the base and the factors on the lobes; `texel` returns the value of a texture.
     pub fn colours(&self, texel: impl Fn(TextureId) -> Rgb) -> Colours<Rgb> {
-        let values = Values::of(&self.parameters, texel);
+        let values = PrincipledValues::of(&self.parameters, texel);
         let mut scales = [Rgb::ZERO; MAX_LOBES];
-        for (scale, part) in scales.iter_mut().zip(&self.parts) {
-            *scale = values.factor(*part, self.parameters.eta);
+        for (scale, lobe) in scales.iter_mut().zip(&self.lobes) {
+            *scale = values.factor(*lobe, self.parameters.eta);
         }
         Colours { base: values.diffuse(), scales }
     }

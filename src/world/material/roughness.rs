@@ -1,57 +1,55 @@
-//! Textured roughness: a model for each level of it, so that tables by roughness are the same as for a
-//! constant one, and constant ones cost nothing more.
+//! Textured roughness: one model per level of it, so that the tables by roughness are those of a constant roughness, and a
+//! constant roughness costs nothing more.
 //!
-//! Deviations: a level represents values within 1.1 % of its own, which is less than half a step of an 8-bit
-//! picture at 0.5 in a texture of α² or of one at 0.18 in one of α; the coat's tables are made for every
-//! eighth level. Values below 1/1024 are clamped to it. Textures of other lobes' roughness are replaced by
-//! their means.
+//! Deviations: a level represents values within 1.1 % of its own. This is less than half a step of an 8-bit image at 0.5
+//! in a texture of α², or at 0.18 in a texture of α. The tables of the coat are made for every eighth level. Values below
+//! 1/1024 are clamped to it. The roughness of other lobes is the mean of its texture.
 
-use base::math::luminance;
-use scene::{Lobe, Material, Roughness, Texture, TextureId};
+use base::math::{Rgb, luminance};
+use scene::{Lobe, Material, Roughness, TextureId, Textures};
 use std::ops::RangeInclusive;
 
-/// Levels from one value to its double.
+/// Number of levels between a value and its double.
 const LEVELS_PER_OCTAVE: i32 = 32;
 
-/// Levels per level of the coat.
+/// Number of roughness levels per level of the coat.
 const COAT_STEP: i32 = 8;
 
-/// Level of the smallest value told apart, 2^-10.
+/// Level of the smallest value that is told apart, 2^-10.
 const MIN_LEVEL: i32 = -10 * LEVELS_PER_OCTAVE;
 
-/// Values of a texture that count as one.
+/// Values of a texture that count as one roughness.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Level(i32);
+pub(super) struct RoughnessLevel(i32);
 
-impl Level {
+impl RoughnessLevel {
     /// Returns the level of a texture's value.
     #[inline]
-    fn of(value: f32) -> Level {
-        Level(((value.log2() * LEVELS_PER_OCTAVE as f32).round() as i32).max(MIN_LEVEL))
+    fn of(value: f32) -> RoughnessLevel {
+        RoughnessLevel(((value.log2() * LEVELS_PER_OCTAVE as f32).round() as i32).max(MIN_LEVEL))
     }
 
     fn value(self) -> f32 {
         (self.0 as f32 / LEVELS_PER_OCTAVE as f32).exp2()
     }
 
-    /// Returns the level whose coat tables this one uses.
-    pub fn of_coat(self) -> Level {
-        Level((self.0 as f32 / COAT_STEP as f32).round() as i32 * COAT_STEP)
+    /// Returns the level whose coat tables this level uses.
+    fn of_coat(self) -> RoughnessLevel {
+        RoughnessLevel((self.0 as f32 / COAT_STEP as f32).round() as i32 * COAT_STEP)
     }
 }
 
-/// The models of a material by the level of its roughness.
+/// Levels of a material's textured roughness.
 #[derive(Clone, Debug)]
-pub(super) struct Levels {
+pub(super) struct RoughnessLevels {
+    /// Texture of the roughness.
     pub texture: TextureId,
     range: RangeInclusive<i32>,
-    /// Index of the lowest level's model.
-    pub first: usize,
 }
 
-impl Levels {
+impl RoughnessLevels {
     /// Returns the levels of the first textured roughness of `material`, if there is any.
-    pub fn of(material: &Material, textures: &[Texture], first: usize) -> Option<Levels> {
+    pub fn of(material: &Material, textures: &Textures) -> Option<RoughnessLevels> {
         let textured = |roughness: &Roughness| match roughness {
             Roughness::Textured { texture, .. } => Some(*texture),
             Roughness::Constant(_) => None,
@@ -65,27 +63,45 @@ impl Levels {
             None => part.lobes.iter().find_map(of_lobe),
         };
         let texture = material.parts().find_map(of_part)?;
-        let texels = &textures.get(texture.0 as usize)?.texels;
-        let levels = || texels.iter().map(|texel| Level::of(luminance(texel)).0);
-        Some(Levels { texture, range: levels().min()?..=levels().max()?, first })
+        let texels = &textures.by_id(texture)?.texels;
+        let levels = || texels.iter().map(|texel| RoughnessLevel::of(luminance(texel)).0);
+        Some(RoughnessLevels { texture, range: levels().min()?..=levels().max()? })
     }
 
-    pub fn all(&self) -> impl Iterator<Item = Level> + use<> {
-        self.range.clone().map(Level)
+    /// Lists all levels in ascending order.
+    pub fn all(&self) -> impl Iterator<Item = RoughnessLevel> + use<> {
+        self.range.clone().map(RoughnessLevel)
     }
 
-    /// Returns the index of the model for a value of the texture.
+    /// Returns the index of the level of a value of the texture, counted from the lowest level.
     #[inline]
-    pub fn model(&self, value: f32) -> usize {
-        let level = Level::of(value).0.clamp(*self.range.start(), *self.range.end());
-        self.first + (level - self.range.start()) as usize
+    pub fn index(&self, value: f32) -> usize {
+        let level = RoughnessLevel::of(value).0.clamp(*self.range.start(), *self.range.end());
+        (level - self.range.start()) as usize
     }
 }
 
-/// Returns α where `level` is that of its texture, and by the means of other textures.
-pub(super) fn alpha(roughness: &Roughness, level: Option<(TextureId, Level)>, textures: &[Texture]) -> f32 {
-    roughness.value(|texture| match level {
-        Some((known, level)) if known == texture => level.value(),
-        _ => textures.get(texture.0 as usize).map_or(1.0, |texture| luminance(texture.mean())),
-    })
+/// Values of textured roughness while a model is built.
+#[derive(Clone, Copy)]
+pub(super) struct RoughnessValues<'a> {
+    /// Means of the scene's textures.
+    pub means: &'a [Rgb],
+    /// Texture whose level is known, and the level.
+    pub level: Option<(TextureId, RoughnessLevel)>,
+}
+
+impl RoughnessValues<'_> {
+    /// Returns α: that of the level if the texture is the level's, else that of the texture's mean.
+    pub fn alpha(&self, roughness: &Roughness) -> f32 {
+        roughness.value(|texture| match self.level {
+            Some((known, level)) if known == texture => level.value(),
+            _ => self.means.get(texture.0 as usize).map_or(1.0, |mean| luminance(*mean)),
+        })
+    }
+
+    /// Returns the values for the tables of a coat.
+    pub fn of_coat(self) -> Self {
+        let level = self.level.map(|(texture, level)| (texture, level.of_coat()));
+        RoughnessValues { level, ..self }
+    }
 }

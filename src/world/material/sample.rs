@@ -1,37 +1,13 @@
 //! Sampling of directions in proportion to their contribution: base or lobe by their expected shares of the
 //! light, cosine-weighted for the base, by its own rule for a lobe.
 
-use super::bsdf::{Bsdf, Outgoing};
-use super::lobe::MAX_LOBES;
+use super::bsdf::Outgoing;
+use super::lobe::{BsdfSample, MAX_LOBES};
+use super::model::Bsdf;
 use base::math::Rgb;
 use base::sampling::cosine_hemisphere;
 use glam::{Vec2, Vec3};
 use std::f32::consts::{FRAC_1_PI, PI};
-
-/// Sampled direction.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct BsdfSample {
-    /// Unit direction, away from the surface.
-    pub wi: Vec3,
-    /// BSDF · cos / pdf, for radiance. Flux (photons) is not compressed by refraction: multiply by `eta`².
-    pub weight: Rgb,
-    /// Density per solid angle; for a delta lobe, the probability of having chosen it.
-    pub pdf: f32,
-    /// True if the lobe scatters into this direction only.
-    pub delta: bool,
-    /// Index of refraction on the side of `wi` over that on the side of `wo`; 1 unless refracted.
-    pub eta: f32,
-    /// True if light goes on as if there was no surface, but for its colour.
-    pub straight: bool,
-}
-
-impl BsdfSample {
-    /// Makes the sample of a delta lobe that has been chosen with probability 1.
-    #[inline]
-    pub(super) fn delta(wi: Vec3, weight: Rgb, eta: f32) -> BsdfSample {
-        BsdfSample { wi, weight, pdf: 1.0, delta: true, eta, straight: false }
-    }
-}
 
 /// All directions in which light continues without being spread, for following specular chains
 /// deterministically: each weight is the lobe's reflectance or transmittance, each pdf is 1.
@@ -51,7 +27,7 @@ impl Bsdf<'_> {
     pub fn sample(&self, wo: Vec3, u_lobe: f32, u: Vec2) -> Option<BsdfSample> {
         let side = self.side(wo);
         let wo = Vec3::new(wo.x, wo.y, wo.z * side);
-        if !(wo.z > 0.0) && !self.model.passes_light {
+        if !(wo.z > 0.0) && !self.model.kinds.pass_light {
             return None;
         }
         let mut sample = if self.is_lambert() {

@@ -1,19 +1,21 @@
-//! Light that goes on straight through a surface: by gaps, and by thin sheets.
+//! Light that goes on straight through a surface: through gaps and thin sheets.
 
 use super::lobe::{Interface, LobeModel, MAX_LOBES};
-use super::model::Materials;
 use base::math::Rgb;
-use glam::{Vec2, Vec3};
+use glam::Vec3;
 use scene::MaterialId;
 
-/// Lobes that light passes straight, where nothing of the material is textured.
+/// Lobes of a material that light passes straight, if nothing of the material is textured.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Straight {
-    /// Thin sheets, with their factors.
+    /// Thin sheets and their factors.
     sheets: Vec<(Interface, Rgb)>,
     /// Share of the surface that is not there.
     gaps: Rgb,
 }
+
+/// Material, cosine and transmittance of the surface that was passed last. Parallel panes have the same transmittance.
+pub type LastStraight = (MaterialId, f32, Rgb);
 
 impl Straight {
     /// Collects the lobes that light passes straight; `None` if there are none.
@@ -31,7 +33,7 @@ impl Straight {
         (straight.gaps != Rgb::ZERO || !straight.sheets.is_empty()).then_some(straight)
     }
 
-    /// Share of the light at the cosine `cos`, of either sign.
+    /// Returns the share of the light that passes at the cosine `cos`, of either sign.
     #[inline]
     fn transmittance(&self, cos: f32) -> Rgb {
         let mut transmittance = Rgb::ZERO;
@@ -42,33 +44,15 @@ impl Straight {
         }
         transmittance + self.gaps
     }
-}
 
-/// Material, cosine and transmittance of the surface passed last: parallel panes pass the same.
-pub type LastStraight = (MaterialId, f32, Rgb);
-
-impl Materials {
-    /// Share of the light at the cosine to the shading normal, of either sign, that passes straight through a surface.
-    /// The cosine is only asked for where it counts, and texture coordinates where there is a texture.
+    /// Returns the share of the light that passes at the cosine `cos`, which is that of the surface before if the
+    /// material and the cosine are the same.
     #[inline]
-    pub fn straight_transmittance(
-        &self,
-        id: MaterialId,
-        cos: impl FnOnce() -> f32,
-        uv: impl Fn() -> Vec2,
-        last: &mut Option<LastStraight>,
-    ) -> Rgb {
-        let Some(straight) = self.straight(id) else {
-            if let Some(gaps) = self.gaps(id, &uv) {
-                return Rgb::splat(gaps);
-            }
-            return self.at_coordinates(id, uv, || 0.0).straight_transmittance(cos());
-        };
-        let cos = cos();
+    pub fn transmittance_after(&self, id: MaterialId, cos: f32, last: &mut Option<LastStraight>) -> Rgb {
         match *last {
             Some((material, at, transmittance)) if material == id && at == cos => transmittance,
             _ => {
-                let transmittance = straight.transmittance(cos);
+                let transmittance = self.transmittance(cos);
                 *last = Some((id, cos, transmittance));
                 transmittance
             }

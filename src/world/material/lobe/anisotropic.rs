@@ -8,8 +8,7 @@
 //! surface; its bounds are those of the larger roughness for the density and of the smaller for masking; the albedo by
 //! which lobes are chosen is the mean over azimuths.
 
-use super::{Directions, Directions16, FacetBound, FacetBounds16, LobeLanes, mean};
-use crate::material::DirectionBound;
+use super::{DirectionBound, Directions, Directions16, FacetBound, FacetBounds16, LobeLanes, mean};
 use crate::material::fresnel::Curve;
 use crate::material::microfacet::Microfacets;
 use crate::material::table::{AngleTable, rule};

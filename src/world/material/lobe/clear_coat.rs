@@ -4,8 +4,7 @@
 //! 3, it has no division by the cosines, masking is that of α = .25, and the factor a quarter of what it says.
 //! Deviations: Fresnel's reflectance is Schlick's for an index of 1.5, whatever that of the material.
 
-use super::{Directions, Directions16, FacetBound, FacetBounds16, LobeLanes, mean};
-use crate::material::DirectionBound;
+use super::{DirectionBound, Directions, Directions16, FacetBound, FacetBounds16, LobeLanes, mean};
 use crate::material::fresnel::schlick_weight;
 use crate::material::microfacet::Microfacets;
 use base::math::{LANES, Rgb, Vec3x16};

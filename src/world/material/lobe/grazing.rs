@@ -4,8 +4,7 @@
 //! Paper: B. Burley, *Extending the Disney BRDF to a BSDF with Integrated Subsurface Scattering*, 2015, equation 4;
 //! *Physically Based Shading at Disney*, 2012, section 5.2.
 
-use super::{Directions, Directions16, FacetBound, FacetBounds16, LobeLanes};
-use crate::material::DirectionBound;
+use super::{DirectionBound, Directions, Directions16, FacetBound, FacetBounds16, LobeLanes};
 use crate::material::fresnel::schlick_weight;
 use crate::material::table::{AngleTable, rule};
 use base::math::{LANES, Rgb, Vec3x16};

@@ -8,7 +8,7 @@
 //! between n and h is at least half that between wi and the mirror direction, and the angle between wo and h
 //! at most half the sum of the two inclinations.
 
-use crate::material::{DirectionBound, DirectionBounds16};
+use super::{DirectionBound, DirectionBounds16};
 use base::math::{F32x16, LANES, Vec3x16};
 use glam::Vec3;
 

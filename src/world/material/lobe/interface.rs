@@ -1,9 +1,9 @@
 //! Specular reflection and refraction by a smooth dielectric interface, two lobes with a factor each.
 
+use super::BsdfSample;
 use super::mean;
 use super::mirror::reflect;
 use crate::material::fresnel;
-use crate::material::sample::BsdfSample;
 use base::math::Rgb;
 use glam::Vec3;
 
@@ -58,13 +58,13 @@ impl Interface {
         }
     }
 
-    /// True if light goes on in the direction that it comes in.
+    /// Returns true if light goes on in the direction that it comes in.
     #[inline]
     pub fn passes_straight(&self) -> bool {
         self.passage == Passage::Refraction && (self.thin || self.eta == 1.0)
     }
 
-    /// True if light goes on in another direction.
+    /// Returns true if light goes on in another direction.
     pub fn bends(&self) -> bool {
         self.eta != 1.0 && !self.passes_straight()
     }

@@ -1,7 +1,7 @@
 //! Specular reflection by the front of a surface.
 
+use super::BsdfSample;
 use crate::material::fresnel::Curve;
-use crate::material::sample::BsdfSample;
 use base::math::Rgb;
 use glam::Vec3;
 use scene::Fresnel;

@@ -7,11 +7,13 @@
 //! Paper: Walter et al., *Lightcuts*, 2005, section 4.1, for the use made of such bounds.
 //! Deviations: single scattering only; the energy that masking takes is lost.
 
-use super::{Directions, Directions16, FacetBound, FacetBounds16, LobeLanes, LobeShape, ReflectedLobe, mean};
-use crate::material::DirectionBound;
+use super::{
+    DirectionBound, Directions, Directions16, FacetBound, FacetBounds16, LobeLanes, LobeShape, ReflectedLobe,
+    mean,
+};
 use crate::material::fresnel::Curve;
 use crate::material::microfacet::Microfacets;
-use crate::material::table::{ANGLES, AngleTable, rule};
+use crate::material::table::{ANGLES, AngleTable};
 use base::math::{LANES, Rgb, Vec3x16, luminance};
 use glam::{Vec2, Vec3};
 use scene::Fresnel;
@@ -36,7 +38,7 @@ pub(in crate::material) struct RoughLobe {
     pub(in crate::material) facets: Microfacets,
     pub(in crate::material) fresnel: Fresnel,
     /// Maximum reflectance of a conductor by the least cosine: its formula costs more than the rest of a bound.
-    pub(in crate::material) max_reflectance: Option<Arc<AngleTable<Rgb>>>,
+    max_reflectance: Option<Arc<AngleTable<Rgb>>>,
     /// Albedo by angle, where something asks for it.
     pub(in crate::material) albedo: Option<Arc<AngleTable<Rgb>>>,
     /// Albedo of facets that absorb nothing, where virtual lights may radiate by the lobe.
@@ -50,18 +52,29 @@ impl PartialEq for RoughLobe {
 }
 
 impl RoughLobe {
+    /// Makes a lobe without tables of its albedo.
+    pub fn new(facets: Microfacets, fresnel: Fresnel) -> RoughLobe {
+        let max_reflectance = match fresnel {
+            Fresnel::Conductor { .. } | Fresnel::Schlick { .. } => {
+                Some(Arc::new(max_reflectance_table(&fresnel)))
+            }
+            Fresnel::One | Fresnel::Dielectric(_) => None,
+        };
+        RoughLobe { facets, fresnel, max_reflectance, albedo: None, white: None }
+    }
+
     /// Returns the roughness α.
     pub fn alpha(&self) -> f32 {
         self.facets.alpha
     }
 
-    /// True if the lobe is too sharp to pass for diffuse.
+    /// Returns true if the lobe is too sharp to pass for diffuse.
     #[inline]
     pub fn is_glossy(&self) -> bool {
         self.facets.alpha < DIFFUSE_ALPHA
     }
 
-    /// True if eye paths follow the lobe.
+    /// Returns true if eye paths follow the lobe.
     #[inline]
     pub fn is_sharp(&self) -> bool {
         self.facets.alpha <= SHARP_ALPHA
@@ -107,7 +120,7 @@ impl RoughLobe {
         Some(scale * table.lookup(cos))
     }
 
-    /// True if virtual lights may radiate by the lobe, whatever its factor below 1.
+    /// Returns true if virtual lights may radiate by the lobe, whatever its factor below 1.
     pub(in crate::material) fn may_radiate(&self) -> bool {
         !self.is_glossy() && luminance(self.fresnel.reflectance(1.0)) > DIFFUSE_REFLECTANCE
     }
@@ -173,34 +186,11 @@ impl RoughLobe {
     }
 }
 
-/// Tabulates the albedo by angle.
-pub(in crate::material) fn albedo_table(facets: &Microfacets, fresnel: &Fresnel) -> AngleTable<Rgb> {
-    let rule = rule(32);
-    AngleTable::new(|wo| albedo(facets, fresnel, wo, &rule))
-}
-
 /// Tabulates the largest reflectance at any cosine >= each entry's, so that [`AngleTable::floor`] bounds it.
-pub(in crate::material) fn max_reflectance_table(fresnel: &Fresnel) -> AngleTable<Rgb> {
+fn max_reflectance_table(fresnel: &Fresnel) -> AngleTable<Rgb> {
     let normal = fresnel.reflectance(1.0);
     AngleTable(std::array::from_fn(|i| {
         let cos = i as f32 / (ANGLES - 1) as f32;
         fresnel.max_reflectance((cos - 1e-6).max(0.0), normal)
     }))
-}
-
-/// Integrates the light from `wo`, in the xz plane, that single scattering on the facets reflects back to its side.
-pub(in crate::material) fn albedo(
-    facets: &Microfacets,
-    fresnel: &Fresnel,
-    wo: Vec3,
-    rule: &[(f32, f32)],
-) -> Rgb {
-    facets.mean_over_visible(wo, rule, |h| {
-        let cos = wo.dot(h);
-        let wi = 2.0 * cos * h - wo;
-        if cos <= 0.0 || wi.z <= 0.0 {
-            return Rgb::ZERO;
-        }
-        fresnel.reflectance(cos.min(1.0)) * (2.0 * wi.z * facets.v1(wi.z.min(1.0)))
-    })
 }

@@ -1,7 +1,7 @@
 //! Samples are distributed by the density, and their weights agree with the BSDF.
 
 use super::*;
-use crate::material::sample::BsdfSample;
+use crate::material::lobe::BsdfSample;
 use ::base::math::gauss_legendre;
 use std::f32::consts::{PI, TAU};
 

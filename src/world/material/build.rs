@@ -1,0 +1,198 @@
+//! Building of a material: its model, and the way its colours are looked up.
+
+use super::base::CoatInterface;
+use super::colours::ColourSource;
+use super::layers::Layers;
+use super::lobe::{DIFFUSE_ALPHA, LobeModel, MAX_LOBES};
+use super::model::{Bsdf, Colours, LobeKinds, Model};
+use super::roughness::{RoughnessLevels, RoughnessValues};
+use super::straight::Straight;
+use super::tables::Tables;
+use base::math::Rgb;
+use rayon::prelude::*;
+use scene::{Fresnel, Material, MaterialId, Share, Texture, TextureId, Textures};
+
+/// Material of the scene, prepared to be looked up at points.
+#[derive(Clone, Debug)]
+pub(super) struct Entry {
+    /// Model and colours; if the roughness is textured, those of its mean.
+    pub shading: Shading,
+    /// Colours with every texture replaced by its mean.
+    pub average: Colours<Rgb>,
+    /// Models by level of the roughness, if the roughness is textured.
+    pub levels: Option<ShadingLevels>,
+    /// Lobes that light passes straight, if there are any and nothing is textured.
+    pub straight: Option<Straight>,
+    /// Share of the surface that is there, if gaps are all that light passes straight and something is textured.
+    pub opacity: Option<Share>,
+    /// Texture that a lookup reads first, if any.
+    pub first_texture: Option<TextureId>,
+    /// Textures that may be averaged, because the reflected light is linear in their texels; none if roughness, relief
+    /// or opacity are textured, too.
+    pub filtered: Vec<TextureId>,
+}
+
+/// Model and the source of its colours.
+#[derive(Clone, Debug)]
+pub(super) struct Shading {
+    pub model: Model,
+    pub colours: Colouring,
+}
+
+/// Source of the colours of a model.
+#[derive(Clone, Debug)]
+pub(super) enum Colouring {
+    /// Nothing is textured.
+    Constant(Colours<Rgb>),
+    /// Colours, roughness or opacity are textured.
+    Textured(ColourSource),
+}
+
+/// Models of a material by level of its roughness.
+#[derive(Clone, Debug)]
+pub(super) struct ShadingLevels {
+    pub levels: RoughnessLevels,
+    pub shadings: Vec<Shading>,
+}
+
+impl Shading {
+    /// Returns the material at a point; `texel` returns the value of a texture there.
+    #[inline]
+    pub fn bsdf(&self, texel: &dyn Fn(TextureId) -> Rgb) -> Bsdf<'_> {
+        match &self.colours {
+            Colouring::Constant(colours) => self.model.with_colours(colours),
+            Colouring::Textured(source) => self.model.with_colours(&source.colours(&self.model.base, texel)),
+        }
+    }
+}
+
+/// Builder of the materials of a scene.
+pub(super) struct Builder<'a> {
+    textures: &'a Textures,
+    /// Means of the textures.
+    means: Vec<Rgb>,
+    tables: Tables,
+    /// Every distinct coat; the first stands for none.
+    pub coats: Vec<CoatInterface>,
+    /// Every distinct list of lobes.
+    lobe_lists: Vec<Vec<LobeModel>>,
+}
+
+impl<'a> Builder<'a> {
+    /// Prepares to build materials that use `textures`.
+    pub fn new(textures: &'a Textures) -> Builder<'a> {
+        Builder {
+            textures,
+            means: textures.par_iter().map(Texture::mean).collect(),
+            tables: Tables::default(),
+            coats: vec![CoatInterface::None],
+            lobe_lists: Vec::new(),
+        }
+    }
+
+    /// Builds a material.
+    pub fn entry(&mut self, material: &Material, id: MaterialId) -> Entry {
+        let levels = RoughnessLevels::of(material, self.textures);
+        let (mut model, source) = self.model(material, id, None);
+        model.mean_roughness = levels.is_some();
+        let mean = |id: TextureId| self.means.get(id.0 as usize).copied().unwrap_or(Rgb::ONE);
+        let average = source.colours(&model.base, &mean);
+        let textures = source.textures(&model.base);
+        let is_textured = levels.is_some() || source.is_textured();
+        let straight = Straight::new(&model.lobes, &average.scales).filter(|_| !is_textured);
+        let passes_gaps_alone =
+            model.lobes.iter().all(|lobe| matches!(lobe, LobeModel::Gap) || !lobe.passes_straight());
+        let opacity = source.opacity.filter(|_| is_textured && passes_gaps_alone).map(|(share, _)| share);
+        let is_linear = source.layers.is_linear(&model.base) && has_one_textured_factor(material);
+        let first_texture = match &levels {
+            Some(levels) => Some(levels.texture),
+            None => textures.first().copied(),
+        };
+        let colours = match is_textured {
+            true => Colouring::Textured(source),
+            false => Colouring::Constant(average),
+        };
+        Entry {
+            shading: Shading { model, colours },
+            average,
+            levels: levels.map(|levels| self.levels(material, id, levels)),
+            straight,
+            opacity,
+            first_texture,
+            filtered: if is_linear { textures } else { Vec::new() },
+        }
+    }
+
+    /// Builds the models of a material by level of its roughness.
+    fn levels(&mut self, material: &Material, id: MaterialId, levels: RoughnessLevels) -> ShadingLevels {
+        let shading = |level| {
+            let (model, source) = self.model(material, id, Some((levels.texture, level)));
+            let colours = match source.is_textured() {
+                true => Colouring::Textured(source),
+                false => Colouring::Constant(source.colours(&model.base, &|_| Rgb::ONE)),
+            };
+            Shading { model, colours }
+        };
+        let shadings = levels.all().map(shading).collect();
+        ShadingLevels { levels, shadings }
+    }
+
+    /// Builds the model of a material and the source of its colours, for a level of its roughness or for the mean.
+    fn model(
+        &mut self,
+        material: &Material,
+        id: MaterialId,
+        level: Option<(TextureId, super::roughness::RoughnessLevel)>,
+    ) -> (Model, ColourSource) {
+        let most = MAX_LOBES - usize::from(material.opacity.is_some());
+        let roughness = RoughnessValues { means: &self.means, level };
+        let Layers { colours, base, black, coated, mut lobes } =
+            Layers::new(material, roughness, most, &mut self.tables);
+        let bare = !black && !coated;
+        let needs_albedo = bare || lobes.len() > 1 || material.parts().any(|part| part.principled.is_some());
+        self.tabulate(&mut lobes, needs_albedo);
+        let opacity = material.opacity.map(|opacity| (opacity, lobes.len()));
+        lobes.extend(opacity.map(|_| LobeModel::Gap));
+        let model = Model {
+            material: id,
+            two_sided: material.two_sided,
+            coat: number(&mut self.coats, &base.interface),
+            base,
+            lobe_list: number(&mut self.lobe_lists, &lobes),
+            kinds: LobeKinds::of(&lobes),
+            lambert: bare && lobes.is_empty(),
+            lobes,
+            mean_roughness: false,
+        };
+        (model, ColourSource { layers: colours, opacity })
+    }
+
+    /// Adds the tables of albedo to rough lobes: to all if `needed`, else to those that count as diffuse.
+    fn tabulate(&mut self, lobes: &mut [LobeModel], needed: bool) {
+        for lobe in lobes {
+            let LobeModel::Rough(rough) = lobe else { continue };
+            if needed || rough.facets.alpha >= DIFFUSE_ALPHA {
+                rough.albedo = Some(self.tables.albedo(rough.facets, rough.fresnel));
+            }
+            if rough.may_radiate() {
+                rough.white = Some(self.tables.albedo(rough.facets, Fresnel::One));
+            }
+        }
+    }
+}
+
+/// Returns true if no factor of a material but its colours is textured, so that averages of texels are exact.
+fn has_one_textured_factor(material: &Material) -> bool {
+    material.opacity.is_none_or(|opacity| !opacity.is_textured())
+        && material.relief.is_none()
+        && material.parts().all(|part| !part.has_textured_roughness())
+}
+
+/// Returns the index of `item` in `items`, and adds it if it is not among them.
+fn number<T: PartialEq + Clone>(items: &mut Vec<T>, item: &T) -> u32 {
+    let index = items.iter().position(|other| other == item).unwrap_or_else(|| {
+        items.push(item.clone());
+        items.len() - 1
+    });
+    index as u32
+}

@@ -1,0 +1,235 @@
+//! A lobe of any kind: the dispatch over all lobes.
+
+use super::{
+    AnisotropicLobe, BsdfSample, ClearCoat, Directions, Directions16, FacetBound, FacetBounds16, Grazing,
+    Interface, LobeLanes, Mirror, ReflectedLobe, RoughInterface, RoughLobe, mean,
+};
+use base::math::{Rgb, Vec3x16};
+use glam::{Vec2, Vec3};
+
+/// Maximum number of lobes of a BSDF.
+pub(in crate::material) const MAX_LOBES: usize = 6;
+
+/// Lobe without its factor.
+#[derive(Clone, Debug, PartialEq)]
+pub(in crate::material) enum LobeModel {
+    Rough(RoughLobe),
+    Anisotropic(AnisotropicLobe),
+    Mirror(Mirror),
+    Interface(Interface),
+    RoughInterface(RoughInterface),
+    ClearCoat(ClearCoat),
+    Grazing(Grazing),
+    /// Place where there is no surface, for a share of the light.
+    Gap,
+}
+
+impl LobeModel {
+    /// Returns true if light goes on into isolated directions, so that value and density are 0 everywhere.
+    #[inline]
+    pub fn is_delta(&self) -> bool {
+        matches!(self, LobeModel::Mirror(_) | LobeModel::Interface(_) | LobeModel::Gap)
+    }
+
+    /// Returns true if light goes on in another direction than it comes in as by mirrors and glass, be it rough.
+    pub fn bends(&self) -> bool {
+        match self {
+            LobeModel::Mirror(_) | LobeModel::RoughInterface(_) => true,
+            LobeModel::Interface(interface) => interface.bends(),
+            LobeModel::Rough(_)
+            | LobeModel::Anisotropic(_)
+            | LobeModel::ClearCoat(_)
+            | LobeModel::Grazing(_)
+            | LobeModel::Gap => false,
+        }
+    }
+
+    /// Returns true if light goes on in the direction that it comes in.
+    #[inline]
+    pub fn passes_straight(&self) -> bool {
+        match self {
+            LobeModel::Interface(interface) => interface.passes_straight(),
+            LobeModel::Gap => true,
+            _ => false,
+        }
+    }
+
+    /// Returns true if the surface's two sides are the two sides of one interface.
+    pub fn transmits(&self) -> bool {
+        matches!(self, LobeModel::Interface(_) | LobeModel::RoughInterface(_))
+    }
+
+    /// Returns true if light goes on to the other side in more than isolated directions.
+    #[inline]
+    pub fn scatters_across(&self) -> bool {
+        matches!(self, LobeModel::RoughInterface(_))
+    }
+
+    /// Returns true if it is a rough lobe too sharp to pass for diffuse.
+    #[inline]
+    pub fn is_glossy(&self) -> bool {
+        match self {
+            LobeModel::Rough(rough) => rough.is_glossy(),
+            LobeModel::RoughInterface(_) | LobeModel::ClearCoat(_) | LobeModel::Anisotropic(_) => true,
+            _ => false,
+        }
+    }
+
+    /// Returns true if eye paths follow the lobe by sampling it, as they do a mirror: light cuts would show single virtual
+    /// lights in it. Lobes that scatter light across the surface are followed, too, as cuts gather on one side, and
+    /// anisotropic ones, of whose direction on the surface cuts know nothing.
+    #[inline]
+    pub fn is_sharp(&self) -> bool {
+        match self {
+            LobeModel::Rough(rough) => rough.is_sharp(),
+            LobeModel::RoughInterface(_) | LobeModel::ClearCoat(_) | LobeModel::Anisotropic(_) => true,
+            _ => false,
+        }
+    }
+
+    /// Index of refraction on the far side over that on the side of `wo`, if a lobe that scatters refracts; else 1.
+    #[inline]
+    pub fn refraction(&self, wo: Vec3) -> f32 {
+        match self {
+            LobeModel::RoughInterface(rough) => rough.refraction(wo),
+            _ => 1.0,
+        }
+    }
+
+    /// Returns value and density; the latter times `probability`, that of choosing the lobe.
+    #[inline(always)]
+    pub fn eval_pdf(&self, scale: Rgb, probability: f32, directions: &Directions) -> (Rgb, f32) {
+        match self {
+            LobeModel::Rough(rough) => rough.eval_pdf(scale, probability, directions),
+            LobeModel::Anisotropic(rough) => rough.eval_pdf(scale, probability, directions),
+            LobeModel::RoughInterface(rough) => rough.eval_pdf(scale, probability, directions),
+            LobeModel::ClearCoat(coat) => coat.eval_pdf(scale, probability, directions),
+            LobeModel::Grazing(grazing) => grazing.eval_pdf(scale, probability, directions),
+            _ => (Rgb::ZERO, 0.0),
+        }
+    }
+
+    /// Samples a direction in proportion to the lobe, if it is not a delta lobe and the facet chosen does not
+    /// send the light into the surface.
+    #[inline]
+    pub fn sample(&self, wo: Vec3, u: Vec2) -> Option<Directions> {
+        match self {
+            LobeModel::Rough(rough) => rough.sample(wo, u),
+            LobeModel::Anisotropic(rough) => rough.sample(wo, u),
+            LobeModel::RoughInterface(rough) => rough.sample(wo, u),
+            LobeModel::ClearCoat(coat) => coat.sample(wo, u),
+            LobeModel::Grazing(grazing) => grazing.sample(wo, u),
+            _ => None,
+        }
+    }
+
+    /// Returns the direction in which a delta lobe sends light from `wo`, with probability 1.
+    #[inline(always)]
+    pub fn delta(&self, scale: Rgb, wo: Vec3) -> Option<BsdfSample> {
+        match self {
+            LobeModel::Mirror(mirror) => mirror.delta(scale, wo),
+            LobeModel::Interface(interface) => interface.delta(scale, wo),
+            LobeModel::Gap => {
+                let straight = BsdfSample { straight: true, ..BsdfSample::delta(-wo, scale, 1.0) };
+                (scale != Rgb::ZERO).then_some(straight)
+            }
+            _ => None,
+        }
+    }
+
+    /// Estimates the share of the light from `wo` that the lobe scatters, a weight for choosing among lobes.
+    /// `transmittance` is the coat's for `wo`.
+    #[inline(always)]
+    pub fn sampling_weight(&self, scale: Rgb, wo: Vec3, transmittance: f32) -> f32 {
+        match self {
+            LobeModel::Rough(rough) => rough.sampling_weight(scale, wo.z, transmittance),
+            LobeModel::Anisotropic(rough) => rough.sampling_weight(scale, wo.z),
+            LobeModel::Mirror(mirror) => mean(mirror.weight(scale, wo.z)),
+            LobeModel::Interface(interface) => interface.sampling_weight(scale, wo.z),
+            LobeModel::RoughInterface(rough) => rough.sampling_weight(scale, wo.z),
+            LobeModel::ClearCoat(coat) => coat.sampling_weight(scale, wo.z),
+            LobeModel::Grazing(grazing) => mean(grazing.albedo(scale, wo.z)),
+            LobeModel::Gap => mean(scale),
+        }
+    }
+
+    /// Albedo for light at the cosine `cos` > 0; 0 for delta lobes.
+    pub fn albedo(&self, scale: Rgb, cos: f32) -> Rgb {
+        match self {
+            LobeModel::Rough(rough) => rough.mean_reflectance(scale, cos),
+            LobeModel::Anisotropic(rough) => rough.albedo(scale, cos),
+            LobeModel::RoughInterface(rough) => rough.albedo(scale, cos),
+            LobeModel::ClearCoat(coat) => coat.albedo(scale, cos),
+            LobeModel::Grazing(grazing) => grazing.albedo(scale, cos),
+            _ => Rgb::ZERO,
+        }
+    }
+
+    /// Returns the albedo for light at the cosine `cos` > 0, where the lobe is wide enough to pass for diffuse.
+    #[inline]
+    pub fn diffuse_albedo(&self, scale: Rgb, cos: f32) -> Option<Rgb> {
+        match self {
+            LobeModel::Rough(rough) => rough.diffuse_albedo(scale, cos),
+            LobeModel::Grazing(grazing) => Some(grazing.albedo(scale, cos)),
+            _ => None,
+        }
+    }
+
+    /// Returns what a virtual light radiates for light at the cosine `cos` > 0, where the lobe is wide enough for one
+    /// and reflects too much to pass for diffuse.
+    #[inline]
+    pub fn reflected(&self, scale: Rgb, cos: f32) -> Option<ReflectedLobe> {
+        match self {
+            LobeModel::Rough(rough) => rough.reflected(scale, cos),
+            _ => None,
+        }
+    }
+
+    /// Returns an upper bound of value times cosine; 0 for delta lobes and those that scatter light across the surface.
+    #[inline(always)]
+    pub fn bound(&self, scale: Rgb, bound: &FacetBound) -> Rgb {
+        match self {
+            LobeModel::Rough(rough) => rough.bound(scale, bound),
+            LobeModel::Anisotropic(rough) => rough.bound(scale, bound),
+            LobeModel::ClearCoat(coat) => coat.bound(scale, bound),
+            LobeModel::Grazing(grazing) => grazing.bound(scale, bound),
+            _ => Rgb::ZERO,
+        }
+    }
+
+    /// Sets a lane for `wo` on the side of the normal.
+    #[inline]
+    pub fn set_lane(&self, lanes: &mut LobeLanes, lane: usize, scale: Rgb, wo: Vec3) {
+        match self {
+            LobeModel::Rough(rough) => rough.set_lane(lanes, lane, scale, wo),
+            LobeModel::Anisotropic(rough) => rough.set_lane(lanes, lane, scale, wo),
+            LobeModel::ClearCoat(coat) => coat.set_lane(lanes, lane, scale, wo),
+            LobeModel::Grazing(grazing) => grazing.set_lane(lanes, lane, scale, wo),
+            _ => {}
+        }
+    }
+
+    /// Adds the lobe's values, without the cosine, in all lanes.
+    #[inline]
+    pub fn add_value16(&self, lanes: &LobeLanes, directions: &Directions16, sum: &mut Vec3x16) {
+        match self {
+            LobeModel::Rough(rough) => rough.add_value16(lanes, directions, sum),
+            LobeModel::Anisotropic(rough) => rough.add_value16(lanes, directions, sum),
+            LobeModel::ClearCoat(coat) => coat.add_value16(lanes, directions, sum),
+            LobeModel::Grazing(grazing) => grazing.add_value16(lanes, directions, sum),
+            _ => {}
+        }
+    }
+
+    /// Adds the lobe's bounds of value times cosine in all lanes.
+    #[inline]
+    pub fn add_bound16(&self, lanes: &LobeLanes, bounds: &FacetBounds16, sum: &mut Vec3x16) {
+        match self {
+            LobeModel::Rough(rough) => rough.add_bound16(lanes, bounds, sum),
+            LobeModel::Anisotropic(rough) => rough.add_bound16(lanes, bounds, sum),
+            LobeModel::ClearCoat(coat) => coat.add_bound16(lanes, bounds, sum),
+            LobeModel::Grazing(grazing) => grazing.add_bound16(lanes, bounds, sum),
+            _ => {}
+        }
+    }
+}

@@ -1,0 +1,129 @@
+//! Materials of a scene, looked up at points. Values that do not depend on the point are computed once per scene.
+
+use super::base::CoatInterface;
+use super::build::{Builder, Colouring, Entry};
+use super::colours::opaque;
+use super::model::Bsdf;
+use super::straight::LastStraight;
+use base::math::{Rgb, luminance};
+use glam::Vec2;
+use scene::texture::MipMaps;
+use scene::{MaterialId, Scene, Texture, TextureId};
+
+/// Materials of a scene, with the textures that they look up.
+#[derive(Clone, Debug)]
+pub struct Materials {
+    /// Materials by their id.
+    entries: Vec<Entry>,
+    /// Every distinct coat; the first stands for none.
+    coats: Vec<CoatInterface>,
+    textures: MipMaps,
+}
+
+impl Materials {
+    /// Prepares every material of the scene.
+    pub fn new(scene: &Scene) -> Materials {
+        let mut builder = Builder::new(&scene.textures);
+        let ids = (0..).map(MaterialId);
+        let entries: Vec<Entry> =
+            scene.materials.iter().zip(ids).map(|(material, id)| builder.entry(material, id)).collect();
+        let filtered = entries.iter().flat_map(|entry| &entry.filtered).copied();
+        let textures = MipMaps::new(&scene.textures, filtered);
+        Materials { coats: builder.coats, textures, entries }
+    }
+
+    /// Returns true if some textures are averaged over the area that a ray stands for.
+    #[inline]
+    pub fn filter_textures(&self) -> bool {
+        self.textures.filter()
+    }
+
+    /// Returns the number of materials.
+    pub fn count(&self) -> usize {
+        self.entries.len()
+    }
+
+    /// Returns the share of the light at the cosine `cos` > 0 that passes the coat of the given number (see
+    /// [`Bsdf::coat`]).
+    #[inline]
+    pub fn coat_transmittance(&self, coat: u32, cos: f32) -> f32 {
+        self.coats.get(coat as usize).map_or(1.0, |coat| coat.transmittance(cos))
+    }
+
+    /// Returns the material at texture coordinates `uv`.
+    #[inline]
+    pub fn at(&self, id: MaterialId, uv: Vec2) -> Bsdf<'_> {
+        self.at_coordinates(id, || uv, || 0.0)
+    }
+
+    /// Returns the material at the texture coordinates that `uv` returns, which is called only if something is textured.
+    /// Textures are averaged over a square around them, of the side that `covered` returns, if the mean of the reflected
+    /// light stays the same.
+    #[inline]
+    pub fn at_coordinates(
+        &self,
+        id: MaterialId,
+        uv: impl FnOnce() -> Vec2,
+        covered: impl FnOnce() -> f32,
+    ) -> Bsdf<'_> {
+        let entry = &self.entries[id.0 as usize];
+        match &entry.shading.colours {
+            Colouring::Constant(colours) => entry.shading.model.with_colours(colours),
+            Colouring::Textured(_) => {
+                let covered = if entry.filtered.is_empty() { 0.0 } else { covered() };
+                self.textured(entry, uv(), covered)
+            }
+        }
+    }
+
+    fn textured<'m>(&'m self, entry: &'m Entry, uv: Vec2, covered: f32) -> Bsdf<'m> {
+        let texel = |id: TextureId| self.textures.lookup(id, uv, covered);
+        let shading = match &entry.levels {
+            Some(levels) => &levels.shadings[levels.levels.index(luminance(texel(levels.levels.texture)))],
+            None => &entry.shading,
+        };
+        shading.bsdf(&texel)
+    }
+
+    /// Returns the texture of the material that a lookup reads first; `None` if it has none.
+    #[inline]
+    pub fn texture(&self, id: MaterialId) -> Option<&Texture> {
+        self.textures.textures().by_id(self.entries[id.0 as usize].first_texture?)
+    }
+
+    /// Returns the share of the light that passes straight through a surface.
+    ///
+    /// `cos` returns the cosine to the shading normal, of either sign, and is called only if the share depends on it.
+    /// `uv` returns texture coordinates. `last` remembers the surface before.
+    #[inline]
+    pub fn straight_transmittance(
+        &self,
+        id: MaterialId,
+        cos: impl FnOnce() -> f32,
+        uv: impl FnOnce() -> Vec2,
+        last: &mut Option<LastStraight>,
+    ) -> Rgb {
+        let entry = &self.entries[id.0 as usize];
+        if let Some(straight) = &entry.straight {
+            return straight.transmittance_after(id, cos(), last);
+        }
+        match &entry.opacity {
+            Some(opacity) => {
+                let uv = uv();
+                Rgb::splat(1.0 - opaque(opacity, |id| self.textures.textures().lookup(id, uv)))
+            }
+            None => self.at_coordinates(id, uv, || 0.0).straight_transmittance(cos()),
+        }
+    }
+
+    /// Returns all materials in order, each with every texture replaced by its mean.
+    pub fn averages(&self) -> impl Iterator<Item = Bsdf<'_>> {
+        (0..self.entries.len() as u32).map(|id| self.average(MaterialId(id)))
+    }
+
+    /// Returns the material with every texture replaced by its mean.
+    pub fn average(&self, id: MaterialId) -> Bsdf<'_> {
+        let entry = &self.entries[id.0 as usize];
+        entry.shading.model.with_colours(&entry.average)
+    }
+}
