@@ -43,7 +43,7 @@ impl Reliefs {
 }
 
 impl World {
-    /// True if any surface has a relief, or a direction.
+    /// Returns true if any surface has a relief, or a direction.
     #[inline]
     pub(super) fn has_reliefs(&self) -> bool {
         self.reliefs.is_some()
@@ -121,19 +121,16 @@ mod tests {
     use crate::testkit::*;
     use base::math::Rgb;
     use embree::{Hits16, Ray};
-    use glam::{Mat3, Vec2, Vec3};
+    use glam::{Vec2, Vec3};
     use scene::{
-        Camera, Distribution, Filter, Fresnel, Lobe, Material, Principled, Relief, Texels, Texture,
-        TextureId, Wrap,
+        Camera, Distribution, Filter, Fresnel, Lobe, Material, Principled, Relief, Texture, TextureId, Wrap,
     };
 
     /// A square from 0 to 2 in the plane z = 0, u from 0 to 1 along x and v along y, and its relief.
     fn square(relief: Relief, width: usize, texels: Vec<Rgb>) -> WorldAndView {
         let mut scene = scene(Camera::default(), [1, 1]);
-        let (name, height) = ("relief".into(), texels.len() / width);
-        let (filter, wrap, to_uv) = (Filter::Bilinear, Wrap::Clamp, Mat3::IDENTITY);
-        let texels = Texels::new(width, &texels);
-        add_texture(&mut scene, Texture { name, width, height, texels, filter, wrap, to_uv });
+        let texture = texture(width, &texels);
+        add_texture(&mut scene, Texture { filter: Filter::Bilinear, wrap: Wrap::Clamp, ..texture });
         let relieved = Material { relief: Some(relief), ..diffuse(Rgb::ONE) };
         let material = add_material(&mut scene, relieved);
         scene.meshes.push(textured(quad(Vec3::ZERO, Vec3::X * 2.0, Vec3::Y * 2.0, material), Vec2::ONE));

@@ -113,7 +113,7 @@ impl Crossed {
 }
 
 impl World {
-    /// True if there are sheets.
+    /// Returns true if there are sheets.
     #[inline]
     pub fn has_sheets(&self) -> bool {
         self.sheets.is_some()

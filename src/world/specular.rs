@@ -58,18 +58,18 @@ impl Specular {
         }
     }
 
-    /// True if any scatters light to its other side in more than isolated directions.
+    /// Returns true if any scatters light to its other side in more than isolated directions.
     #[inline]
     pub fn scatter_across(&self) -> bool {
         self.scatter_across
     }
 
-    /// True if any bends light by delta lobes, or is of rough glass.
+    /// Returns true if any bends light by delta lobes, or is of rough glass.
     pub fn has_delta_lobes(&self) -> bool {
         self.has_delta_lobes
     }
 
-    /// True if any bends light.
+    /// Returns true if any bends light.
     #[inline]
     pub fn bends_light(&self) -> bool {
         !self.boxes.is_empty()

@@ -1,5 +1,7 @@
-//! Small scenes made in memory, for the tests of all crates from here up.
-#![allow(missing_docs)]
+//! Small scenes in memory, for the unit tests of this crate and of all crates above it (feature `testkit`).
+//!
+//! A test starts from [`scene`], adds materials and meshes to it, and calls [`world`]; or it starts from a preset:
+//! [`lit_room`] and [`room_with_ball`] are closed rooms with an area light.
 
 use crate::World;
 use crate::view::View;
@@ -11,6 +13,8 @@ use scene::{
 };
 use std::ops::{Deref, DerefMut};
 
+/// Returns a pinhole camera at `origin` that looks at `target`. `tan_half_x` is the tangent of half the horizontal field
+/// of view.
 pub fn camera(origin: Vec3, target: Vec3, tan_half_x: f32) -> Camera {
     let forward = (target - origin).normalize();
     let helper = if forward.y.abs() > 0.9 { Vec3::Z } else { Vec3::Y };
@@ -18,10 +22,17 @@ pub fn camera(origin: Vec3, target: Vec3, tan_half_x: f32) -> Camera {
     Camera { origin, forward, right, up: right.cross(forward), tan_half_x, ..Camera::default() }
 }
 
-/// A scene being built, and its view.
+/// Returns the camera of the presets: near the front wall of a room from -1 to 1, looking slightly down.
+pub fn room_camera() -> Camera {
+    camera(Vec3::new(0.0, 0.0, 0.95), Vec3::new(0.0, -0.3, 0.0), 0.9)
+}
+
+/// A scene under construction and its view.
 #[derive(Clone)]
 pub struct SceneAndView {
+    /// The scene.
     pub scene: Scene,
+    /// Camera and film.
     pub view: View,
 }
 
@@ -41,7 +52,9 @@ impl DerefMut for SceneAndView {
 
 /// A world and its view.
 pub struct WorldAndView {
+    /// The world.
     pub world: World,
+    /// Camera and film.
     pub view: View,
 }
 
@@ -53,16 +66,18 @@ impl Deref for WorldAndView {
     }
 }
 
+/// Returns an empty scene that `camera` sees on a film of `resolution` pixels.
 pub fn scene(camera: Camera, resolution: [u32; 2]) -> SceneAndView {
     let scene = Scene { name: "test".into(), ..Scene::default() };
     SceneAndView { scene, view: View::whole(camera, resolution) }
 }
 
-/// Returns a world's scene and view for changes.
-pub fn staged(WorldAndView { world, view }: WorldAndView) -> SceneAndView {
-    SceneAndView { scene: world.scene, view }
+/// Takes a world apart, to change its scene.
+pub fn staged(staged: WorldAndView) -> SceneAndView {
+    SceneAndView { scene: staged.world.scene, view: staged.view }
 }
 
+/// Returns a two-sided Lambertian material.
 pub fn diffuse(reflectance: Rgb) -> Material {
     Material {
         name: "diffuse".into(),
@@ -72,6 +87,7 @@ pub fn diffuse(reflectance: Rgb) -> Material {
     }
 }
 
+/// Returns a perfect mirror that absorbs nothing.
 pub fn mirror() -> Material {
     Material {
         lobes: vec![Lobe::Mirror { fresnel: Fresnel::One, scale: Reflectance::Constant(Rgb::ONE) }],
@@ -79,7 +95,7 @@ pub fn mirror() -> Material {
     }
 }
 
-/// A metal of a roughness, whose facets reflect a share of the light.
+/// Returns a rough metal (GGX) whose facets reflect the share `reflectance` of the light.
 pub fn rough_metal(alpha: f32, reflectance: f32) -> Material {
     let lobe = Lobe::Rough {
         distribution: Distribution::Ggx,
@@ -90,13 +106,14 @@ pub fn rough_metal(alpha: f32, reflectance: f32) -> Material {
     Material { lobes: vec![lobe], ..diffuse(Rgb::ZERO) }
 }
 
+/// Returns clear solid glass of the given index of refraction.
 pub fn glass(eta: f32) -> Material {
     let one = Reflectance::Constant(Rgb::ONE);
     let lobes = vec![Lobe::Dielectric { eta, thin: false, reflectance: one, transmittance: one }];
     Material { lobes, ..diffuse(Rgb::ZERO) }
 }
 
-/// A thin sheet of glass that takes part of the light which passes it.
+/// Returns a thin sheet of tinted glass.
 pub fn pane(eta: f32, transmittance: Rgb) -> Material {
     let (reflectance, transmittance) =
         (Reflectance::Constant(Rgb::ONE), Reflectance::Constant(transmittance));
@@ -104,15 +121,23 @@ pub fn pane(eta: f32, transmittance: Rgb) -> Material {
     Material { lobes, ..diffuse(Rgb::ZERO) }
 }
 
-/// Diffuse by the texels of a texture, top row first, which repeats.
+/// Adds a repeating texture of the given texels, top row first, and returns a Lambertian material of its colours.
 pub fn checkered(scene: &mut Scene, width: usize, texels: Vec<Rgb>) -> Material {
-    let height = texels.len() / width;
-    let (filter, wrap) = (Filter::Nearest, Wrap::Repeat);
-    let name = "checker".into();
-    let texels = Texels::new(width, &texels);
-    let to_uv = Mat3::IDENTITY;
-    let texture = add_texture(scene, Texture { name, width, height, texels, filter, wrap, to_uv });
+    let texture = add_texture(scene, texture(width, &texels));
     Material { diffuse: Parameter::Textured { texture, scale: Rgb::ONE }, ..diffuse(Rgb::ZERO) }
+}
+
+/// Returns a repeating texture of the given texels, top row first, without interpolation.
+pub fn texture(width: usize, texels: &[Rgb]) -> Texture {
+    Texture {
+        name: "texture".into(),
+        width,
+        height: texels.len() / width,
+        texels: Texels::new(width, texels),
+        filter: Filter::Nearest,
+        wrap: Wrap::Repeat,
+        to_uv: Mat3::IDENTITY,
+    }
 }
 
 /// Adds a texture to a scene.
@@ -122,30 +147,19 @@ pub fn add_texture(scene: &mut Scene, texture: Texture) -> TextureId {
     TextureId(scene.textures.len() as u32 - 1)
 }
 
+/// Adds a material to a scene.
 pub fn add_material(scene: &mut Scene, material: Material) -> MaterialId {
     scene.materials.push(material);
     MaterialId(scene.materials.len() as u32 - 1)
 }
 
-/// A scene of nothing but materials (and one 2x1 texture: red at u < 1/2, green beyond).
+/// Returns a scene without meshes: the materials, and one texture that is red for u < 1/2 and green for u > 1/2.
 pub fn textured_materials(materials: Vec<Material>) -> Scene {
-    Scene {
-        materials,
-        textures: vec![Texture {
-            name: String::new(),
-            width: 2,
-            height: 1,
-            texels: Texels::new(2, &[Rgb::X, Rgb::Y]),
-            filter: Filter::Nearest,
-            wrap: Wrap::Repeat,
-            to_uv: Mat3::IDENTITY,
-        }]
-        .into(),
-        ..Scene::default()
-    }
+    let textures = vec![texture(2, &[Rgb::X, Rgb::Y])].into();
+    Scene { materials, textures, ..Scene::default() }
 }
 
-/// A parallelogram `corner + s·a + t·b` whose front is on the side of `a × b`.
+/// Returns the parallelogram `corner + s·a + t·b`. Its front is on the side of `a × b`.
 pub fn quad(corner: Vec3, a: Vec3, b: Vec3, material: MaterialId) -> Mesh {
     Mesh {
         name: "quad".into(),
@@ -158,13 +172,13 @@ pub fn quad(corner: Vec3, a: Vec3, b: Vec3, material: MaterialId) -> Mesh {
     }
 }
 
-/// The same with texture coordinates that repeat a texture so many times along each edge.
+/// Gives a parallelogram texture coordinates from 0 to `repeats` along its edges.
 pub fn textured(mut quad: Mesh, repeats: Vec2) -> Mesh {
     quad.uvs = [Vec2::ZERO, Vec2::X, Vec2::ONE, Vec2::Y].map(|uv| uv * repeats).into();
     quad
 }
 
-/// The six walls of an axis-aligned box, fronts inward.
+/// Returns the six walls of an axis-aligned box. Their fronts face inwards.
 pub fn room(low: Vec3, high: Vec3, material: MaterialId) -> Vec<Mesh> {
     let d = high - low;
     let (x, y, z) = (Vec3::X * d.x, Vec3::Y * d.y, Vec3::Z * d.z);
@@ -178,7 +192,8 @@ pub fn room(low: Vec3, high: Vec3, material: MaterialId) -> Vec<Mesh> {
     ]
 }
 
-/// A square room from -1 to 1 with a lamp below its ceiling, square pixels.
+/// Returns a diffuse room from -1 to 1 with an area light below its ceiling, and the material of the walls. The film has
+/// `size` × `size` pixels.
 pub fn lit_room(camera: Camera, size: u32) -> (SceneAndView, MaterialId) {
     let mut scene = scene(camera, [size, size]);
     let wall = add_material(&mut scene, diffuse(Rgb::new(0.7, 0.6, 0.5)));
@@ -188,9 +203,10 @@ pub fn lit_room(camera: Camera, size: u32) -> (SceneAndView, MaterialId) {
     (scene, wall)
 }
 
-/// Grey room lit by a square under its ceiling, with a ball in it.
+/// Returns a diffuse room from -1 to 1 with an area light below its ceiling, seen by [`room_camera`] on 32 × 32 pixels.
+/// If a material is given, a ball of it lies in the room.
 pub fn room_with_ball(ball: Option<Material>) -> WorldAndView {
-    let mut scene = scene(camera(Vec3::new(0.0, 0.0, 0.95), Vec3::new(0.0, -0.3, 0.0), 0.9), [32, 32]);
+    let mut scene = scene(room_camera(), [32, 32]);
     let wall = add_material(&mut scene, diffuse(Rgb::new(0.7, 0.5, 0.6)));
     scene.meshes.extend(room(Vec3::splat(-1.0), Vec3::ONE, wall));
     let corner = Vec3::new(-0.3, 0.99, -0.3);
@@ -203,12 +219,13 @@ pub fn room_with_ball(ball: Option<Material>) -> WorldAndView {
     world(scene)
 }
 
+/// Makes a mesh emit `radiance` on its front.
 pub fn emitting(mut mesh: Mesh, radiance: Rgb) -> Mesh {
     mesh.emission = Some(Emission { radiance, texture: None, two_sided: false });
     mesh
 }
 
-/// A sphere with smooth normals, `n` steps around the equator.
+/// Returns a sphere with interpolated normals and `n` steps around its equator.
 pub fn sphere(centre: Vec3, radius: f32, n: u32, material: MaterialId) -> Mesh {
     let rows = n / 2;
     let mut mesh = quad(centre, Vec3::X, Vec3::Y, material);
@@ -234,6 +251,10 @@ pub fn sphere(centre: Vec3, radius: f32, n: u32, material: MaterialId) -> Mesh {
     mesh
 }
 
-pub fn world(SceneAndView { scene, view }: SceneAndView) -> WorldAndView {
-    WorldAndView { world: World::new(scene, 2).expect("the scene builds"), view }
+/// Builds the world of a scene.
+///
+/// # Panics
+/// If Embree cannot build it.
+pub fn world(staged: SceneAndView) -> WorldAndView {
+    WorldAndView { world: World::new(staged.scene, 2).expect("the scene builds"), view: staged.view }
 }

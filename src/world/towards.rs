@@ -89,7 +89,7 @@ impl Specular {
 }
 
 impl Specular {
-    /// True if a ray may meet a surface that has delta lobes, or is of rough glass.
+    /// Returns true if a ray may meet a surface that has delta lobes, or is of rough glass.
     #[inline]
     pub fn may_meet_delta_lobes(&self, ray: &Ray) -> bool {
         let (low, high) = (self.delta_boxes.low.rows(), self.delta_boxes.high.rows());

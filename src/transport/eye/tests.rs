@@ -11,10 +11,9 @@ use base::film::{Layer, Pixels, Window};
 use base::math::{Cone, Rgb};
 use base::progress::Control;
 use base::sampling::Sampler;
-use glam::{DVec3, Mat3, Vec2, Vec3};
+use glam::{DVec3, Vec2, Vec3};
 use scene::{
-    Camera, Coat, DeltaLight, Distribution, Emission, Filter, Fresnel, Lobe, Material, MaterialId, Mesh,
-    Reflectance, Texels, Texture, Wrap,
+    Camera, Coat, DeltaLight, Distribution, Emission, Fresnel, Lobe, Material, MaterialId, Mesh, Reflectance,
 };
 use std::time::Duration;
 use world::World;
@@ -354,17 +353,8 @@ fn a_sign_has_its_picture_for_albedo_whatever_its_brightness() {
     for brightness in [1e-6, 14.0] {
         let mut scene = seen_from_origin([8, 4]);
         let dark = add_material(&mut scene, diffuse(Rgb::new(0.1, 0.02, 0.02)));
-        let texels = Texels::new(2, &[Rgb::new(0.5, 0.0, 0.05), Rgb::new(0.0, 0.25, 0.125)]);
-        let sign = Texture {
-            name: "sign".to_owned(),
-            width: 2,
-            height: 1,
-            texels,
-            filter: Filter::Nearest,
-            wrap: Wrap::Clamp,
-            to_uv: Mat3::IDENTITY,
-        };
-        let texture = Some(add_texture(&mut scene, sign));
+        let texels = [Rgb::new(0.5, 0.0, 0.05), Rgb::new(0.0, 0.25, 0.125)];
+        let texture = Some(add_texture(&mut scene, texture(2, &texels)));
         let mut sign = wall(-4.0, dark);
         sign.uvs = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]].map(Vec2::from).to_vec();
         sign.emission = Some(Emission { radiance: Rgb::splat(brightness), texture, two_sided: true });

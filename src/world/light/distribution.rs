@@ -53,7 +53,7 @@ impl DiscreteDistribution {
         self.cumulative.len() - 1
     }
 
-    /// True if there is no outcome to draw.
+    /// Returns true if there is no outcome to draw.
     pub fn is_empty(&self) -> bool {
         self.len() == 0 || self.total <= 0.0
     }

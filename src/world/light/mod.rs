@@ -95,7 +95,7 @@ impl Emitters {
         Emitters { spheres, areas, deltas, environment, light_of_mesh, selection }
     }
 
-    /// True if a mesh is a light.
+    /// Returns true if a mesh is a light.
     #[inline]
     pub fn is_light(&self, mesh: u32) -> bool {
         self.light_of_mesh[mesh as usize] != NO_LIGHT
@@ -112,18 +112,18 @@ impl Emitters {
         self.areas.iter().zip(self.spheres.iter().copied())
     }
 
-    /// True if a ray can meet an emitter by chance.
+    /// Returns true if a ray can meet an emitter by chance.
     #[inline]
     pub fn are_hittable(&self) -> bool {
         !self.areas.is_empty() || self.environment.is_some()
     }
 
-    /// True if there are several emitters, of which some may contribute more to the image than others.
+    /// Returns true if there are several emitters, of which some may contribute more to the image than others.
     pub fn may_be_uneven(&self) -> bool {
         self.areas.len() + self.deltas.len() + usize::from(self.environment.is_some()) > 1
     }
 
-    /// True if lamps are so many that it pays to learn which are seen from where.
+    /// Returns true if lamps are so many that it pays to learn which are seen from where.
     pub fn may_hide(&self) -> bool {
         self.areas.len() + self.deltas.len() >= MIN_HIDDEN
     }

@@ -56,7 +56,7 @@ impl<'w> Engine<'w> {
         self.counters.take()
     }
 
-    /// True if a ray is occluded. `key` identifies the light in the cache.
+    /// Returns true if a ray is occluded. `key` identifies the light in the cache.
     #[inline]
     pub fn occluded(&self, ray: &Ray, key: u32) -> bool {
         if self.cache.is_some() {

@@ -19,7 +19,7 @@ settings! {
 }
 
 impl ShadowSettings {
-    /// True if rays from eye samples use it; `shared` if neighbouring samples share cuts.
+    /// Returns true if rays from eye samples use it; `shared` if neighbouring samples share cuts.
     ///
     /// Measured by `lightsplat bench shadow`: the cache is worth its cost for samples that all have cuts of
     /// their own. Where they share cuts, the few single rays in between have hardly any occluders in common.

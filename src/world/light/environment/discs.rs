@@ -58,7 +58,7 @@ impl Discs {
         self.discs.iter().map(move |disc| Tile::apart(disc.mean_luminance() / total, disc.solid_angle()))
     }
 
-    /// True if a tile is a disc's.
+    /// Returns true if a tile is a disc's.
     #[inline]
     pub fn has(&self, tile: usize) -> bool {
         tile >= self.first

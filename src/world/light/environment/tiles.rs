@@ -225,7 +225,7 @@ impl Sums {
         Sums(std::array::from_fn(|i| self.0[i] + other.0[i]))
     }
 
-    /// True if radiance is about even.
+    /// Returns true if radiance is about even.
     fn is_even(&self) -> bool {
         let [angle, sum, squares] = self.0;
         squares * angle <= (1.0 + EVEN) * sum * sum
