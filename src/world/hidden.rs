@@ -1,6 +1,7 @@
 //! Emitters that the camera is not to show.
 
-use super::{World, beyond};
+use super::World;
+use super::sheets::beyond;
 use embree::Ray;
 
 /// Maximum number of emitting surfaces one behind the other that are hidden.

@@ -3,7 +3,7 @@
 use super::triangle::position;
 use super::{Surface, World};
 use crate::material::Bsdfs16;
-use base::math::{F32x16, Frame, LANES, U32x16, Vec2x16, Vec3x16};
+use base::math::{Cone, F32x16, Frame, LANES, U32x16, Vec2x16, Vec3x16, lanes_in};
 use embree::Hits16;
 use glam::Vec2;
 
@@ -88,16 +88,35 @@ impl World {
             s.bitangent.set(i, frame.bitangent);
             s.shading_normal.set(i, frame.normal);
         }
-        if self.has_reliefs() {
+        if let Some(reliefs) = &self.reliefs {
             for i in 0..LANES {
                 let (mut frame, triangle) = (s.frame(i), self.triangles.get(s.mesh[i], s.triangle[i]));
-                self.relieve(&mut frame, s.mesh[i], triangle, s.barycentric.get(i));
+                let mesh = &self.scene.meshes[s.mesh[i] as usize];
+                reliefs.turn(&mut frame, s.mesh[i], mesh, triangle, s.barycentric.get(i));
                 s.tangent.set(i, frame.tangent);
                 s.bitangent.set(i, frame.bitangent);
                 s.shading_normal.set(i, frame.normal);
             }
         }
         s
+    }
+
+    /// Sets the footprints of rays along `direction` that hit `surfaces`, in the lanes of `hit`. `cone` returns the cone
+    /// around a lane's ray.
+    #[inline]
+    pub fn cover(
+        &self,
+        surfaces: &mut Surfaces16,
+        direction: &Vec3x16,
+        hit: u16,
+        cone: impl Fn(usize) -> Cone,
+    ) {
+        if self.filters_textures() {
+            for lane in lanes_in(hit) {
+                let width = cone(lane).width_at(surfaces.t[lane]);
+                surfaces.footprint.set(lane, direction.get(lane) * width);
+            }
+        }
     }
 
     /// Returns the BSDFs of the surfaces, seen from `wo` in their shading frames, textures looked up.

@@ -5,7 +5,6 @@
 //! Deviations: the relief changes shading alone, neither the outline nor shadows; where a turned normal faces away from
 //! the eye, a two-sided surface is shaded as seen from behind.
 
-use super::World;
 use super::triangle::Triangle;
 use base::math::Frame;
 use glam::{Vec2, Vec3};
@@ -40,24 +39,16 @@ impl Reliefs {
         let any = turns.iter().any(|turn| *turn != Turn::default());
         any.then(|| Reliefs { turns, textures: scene.textures.clone() })
     }
-}
 
-impl World {
-    /// Returns true if any surface has a relief, or a direction.
+    /// Turns the shading frame at barycentric weights `b` of a triangle by the relief of its mesh, whose number is `index`,
+    /// and turns x to the direction that its material asks for.
     #[inline]
-    pub(super) fn has_reliefs(&self) -> bool {
-        self.reliefs.is_some()
-    }
-
-    /// Turns the shading frame at barycentric weights `b` of a triangle by the relief of its mesh, if it has one, and
-    /// x along u or at an angle from it, if its material asks for that.
-    #[inline]
-    pub(super) fn relieve(&self, frame: &mut Frame, mesh: u32, triangle: &Triangle, b: Vec2) {
-        let Some(Reliefs { turns, textures }) = &self.reliefs else { return };
-        let Turn { relief, from_u } = &turns[mesh as usize];
-        let mesh = &self.scene.meshes[mesh as usize];
+    pub fn turn(&self, frame: &mut Frame, index: u32, mesh: &Mesh, triangle: &Triangle, b: Vec2) {
+        let Turn { relief, from_u } = &self.turns[index as usize];
         if let Some(relief) = relief {
-            *frame = turned(textures, relief, mesh, triangle, b, frame.normal);
+            let normal = frame.normal;
+            let turned = self.normal(relief, mesh, triangle, b, normal);
+            *frame = Frame::from_normal(turned.and_then(Vec3::try_normalize).unwrap_or(normal));
         }
         if let Some(angle) = from_u {
             let [along_u, along_v] = derivatives(mesh, triangle);
@@ -70,36 +61,36 @@ impl World {
             }
         }
     }
-}
 
-/// Returns the frame of a relief where the shading normal is `normal`; the tangent is not along u.
-#[inline(never)]
-fn turned(
-    textures: &Textures,
-    relief: &Relief,
-    mesh: &Mesh,
-    triangle: &Triangle,
-    b: Vec2,
-    normal: Vec3,
-) -> Frame {
-    let [along_u, along_v] = derivatives(mesh, triangle);
-    let uv = mesh.uv(&triangle.vertices, b);
-    let level = |v: Vec3| v - normal * normal.dot(v);
-    let turned = match *relief {
-        Relief::Normals { texture: id, strength, y_along_v } => textures.by_id(id).map(|texture| {
-            let local = texture.lookup(uv) * 2.0 - 1.0;
-            let x = level(along_u).normalize_or_zero();
-            let y = normal.cross(x);
-            let y = if y_along_v && y.dot(along_v) < 0.0 { -y } else { y };
-            x * (local.x * strength) + y * (local.y * strength) + normal * local.z
-        }),
-        Relief::Heights { texture: id, scale } => textures.by_id(id).map(|texture| {
-            let slope = texture.luminance_gradient(uv) * scale;
-            let turned = (level(along_u) + normal * slope.x).cross(level(along_v) + normal * slope.y);
-            if turned.dot(triangle.normal) < 0.0 { -turned } else { turned }
-        }),
-    };
-    Frame::from_normal(turned.and_then(Vec3::try_normalize).unwrap_or(normal))
+    /// Returns the normal of a relief on a surface of shading normal `normal`, not of unit length; `None` if its texture is
+    /// missing.
+    #[inline(never)]
+    fn normal(
+        &self,
+        relief: &Relief,
+        mesh: &Mesh,
+        triangle: &Triangle,
+        b: Vec2,
+        normal: Vec3,
+    ) -> Option<Vec3> {
+        let [along_u, along_v] = derivatives(mesh, triangle);
+        let uv = mesh.uv(&triangle.vertices, b);
+        let level = |v: Vec3| v - normal * normal.dot(v);
+        match *relief {
+            Relief::Normals { texture, strength, y_along_v } => self.textures.by_id(texture).map(|texture| {
+                let local = texture.lookup(uv) * 2.0 - 1.0;
+                let x = level(along_u).normalize_or_zero();
+                let y = normal.cross(x);
+                let y = if y_along_v && y.dot(along_v) < 0.0 { -y } else { y };
+                x * (local.x * strength) + y * (local.y * strength) + normal * local.z
+            }),
+            Relief::Heights { texture, scale } => self.textures.by_id(texture).map(|texture| {
+                let slope = texture.luminance_gradient(uv) * scale;
+                let turned = (level(along_u) + normal * slope.x).cross(level(along_v) + normal * slope.y);
+                if turned.dot(triangle.normal) < 0.0 { -turned } else { turned }
+            }),
+        }
+    }
 }
 
 /// Derivatives of the position by u and v, on the plane of a triangle.

@@ -4,12 +4,11 @@
 //! Queries for occlusion leave sheets out; the light of segments found free takes the colour of the sheets that they
 //! cross, each of them once, all found in one traversal.
 
-use super::{World, shading_normal, triangle_meshes};
-use crate::material::{LastStraight, Materials};
+use super::World;
+use crate::material::LastStraight;
 use base::math::{Rgb, lanes_in};
-use embree::{Accel, EmbreeError, Hit, Ray, Rays16};
+use embree::{Hit, Ray, Rays16};
 use glam::{Vec2, Vec3};
-use scene::Scene;
 
 /// Maximum number of sheets that a segment crosses; it is blocked by more.
 const MAX_CROSSED: usize = 64;
@@ -46,21 +45,6 @@ struct Crossed {
     count: usize,
     /// All of them if they are more than few, else empty.
     many: Vec<Crossing>,
-}
-
-/// The sheets of a scene beside the structure `whole` over all its meshes; `None` if there are none.
-pub(super) fn sheets(
-    scene: &Scene,
-    materials: &Materials,
-    whole: &Accel,
-) -> Result<Option<Accel>, EmbreeError> {
-    let mut meshes = triangle_meshes(scene, materials);
-    if meshes.iter().all(|mesh| mesh.occludes) {
-        return Ok(None);
-    }
-    // Meshes keep their numbers.
-    meshes.iter_mut().filter(|mesh| mesh.occludes).for_each(|mesh| mesh.triangles = &[]);
-    Accel::build(whole.device(), &meshes).map(Some)
 }
 
 impl Crossed {
@@ -136,9 +120,9 @@ impl World {
     fn share_passing(&self, hit: &Hit, out: Vec3, last: &mut Option<LastStraight>) -> Rgb {
         let mesh = &self.scene.meshes[hit.geometry as usize];
         let barycentric = Vec2::new(hit.u, hit.v);
-        let normal = || match self.has_reliefs() {
+        let normal = || match self.reliefs.is_some() {
             true => self.surface(hit).frame.normal,
-            false => shading_normal(mesh, self.triangles.get(hit.geometry, hit.primitive), barycentric),
+            false => self.triangles.get(hit.geometry, hit.primitive).shading_normal(mesh, barycentric),
         };
         let uv = || mesh.uv(&self.triangles.get(hit.geometry, hit.primitive).vertices, barycentric);
         let cos = || normal().dot(out);

@@ -1,17 +1,15 @@
 //! Surfaces with specular lobes: delta lobes, of mirrors and glass, and those too sharp to pass for diffuse. Straight
 //! segments between surfaces and virtual lights do not carry the light that these send on.
 
-use super::towards::Boxes16;
+use super::towards::{Boxes16, Faces, MIN_DIRECTION};
 use crate::material::{Bsdf, Materials};
 use base::math::{LANES, U32x16, Vec3x16, mask_of};
+use embree::Ray;
 use glam::Vec3;
 use scene::{Mesh, Scene};
 
 /// Maximum number of boxes that rays are tested against.
 const MAX_BOXES: usize = LANES;
-
-/// Coordinate of a direction that stands for smaller ones, 0 among them.
-pub(super) const MIN_DIRECTION: f32 = 1e-20;
 
 /// The specular surfaces of a scene.
 #[derive(Clone, Debug, Default)]
@@ -73,6 +71,17 @@ impl Specular {
     #[inline]
     pub fn bends_light(&self) -> bool {
         !self.boxes.is_empty()
+    }
+
+    /// Returns the front faces of the boxes around delta lobes and rough glass, seen from `x`, where the normal is `n`.
+    pub fn faces(&self, x: Vec3, n: Vec3) -> Faces<'_> {
+        self.delta_boxes.faces(x, n)
+    }
+
+    /// Returns true if a ray may meet a surface that has delta lobes, or is of rough glass.
+    #[inline]
+    pub fn may_meet_delta_lobes(&self, ray: &Ray) -> bool {
+        self.delta_boxes.may_be_met(ray)
     }
 
     /// Lanes whose meshes are specular.

@@ -5,10 +5,12 @@
 //!
 //! Units: densities are by solid angle.
 
-use super::specular::{MIN_DIRECTION, Specular};
 use base::math::{F32x16, LANES, Vec3x16};
 use embree::Ray;
 use glam::{Vec2, Vec3};
+
+/// Coordinate of a direction that replaces smaller ones, 0 among them.
+pub(super) const MIN_DIRECTION: f32 = 1e-20;
 
 /// Least cosine that counts for a face: its centre may be below a horizon that the face rises above.
 const MIN_COS: f32 = 0.1;
@@ -47,11 +49,10 @@ impl Boxes16 {
     }
 }
 
-impl Specular {
+impl Boxes16 {
     /// Front faces seen from `x`, where the normal is `n`.
     pub fn faces(&self, x: Vec3, n: Vec3) -> Faces<'_> {
-        let boxes = &self.delta_boxes;
-        let (low, high) = (boxes.low.rows(), boxes.high.rows());
+        let (low, high) = (self.low.rows(), self.high.rows());
         let (mut centre, mut half, mut height) = ([[0.0; LANES]; 3], [[0.0; LANES]; 3], [0.0; LANES]);
         for axis in 0..3 {
             for i in 0..LANES {
@@ -60,7 +61,8 @@ impl Specular {
                 height[i] += n[axis] * centre[axis][i] + n[axis].abs() * half[axis][i];
             }
         }
-        let mut faces = Faces { boxes, x, at: [[0.0; LANES]; 3], weights: [[0.0; LANES]; 3], total: 0.0 };
+        let mut faces =
+            Faces { boxes: self, x, at: [[0.0; LANES]; 3], weights: [[0.0; LANES]; 3], total: 0.0 };
         let mut totals = [0.0; LANES];
         for axis in 0..3 {
             let (b, c) = ((axis + 1) % 3, (axis + 2) % 3);
@@ -86,13 +88,10 @@ impl Specular {
         faces.total = totals.iter().sum();
         faces
     }
-}
-
-impl Specular {
     /// Returns true if a ray may meet a surface that has delta lobes, or is of rough glass.
     #[inline]
-    pub fn may_meet_delta_lobes(&self, ray: &Ray) -> bool {
-        let (low, high) = (self.delta_boxes.low.rows(), self.delta_boxes.high.rows());
+    pub fn may_be_met(&self, ray: &Ray) -> bool {
+        let (low, high) = (self.low.rows(), self.high.rows());
         let (mut near, mut far) = ([0.0f32; LANES], [f32::INFINITY; LANES]);
         for axis in 0..3 {
             let d = ray.direction[axis];
@@ -164,8 +163,8 @@ mod tests {
             (Vec3::new(-2.0, -0.5, 0.3), Vec3::new(-1.0, 0.8, 0.3)),
             (Vec3::new(-1.0, -9.0, -1.0), Vec3::new(1.0, -8.0, 1.0)),
         ];
-        let specular = Specular { delta_boxes: Boxes16::new(&boxes), ..Default::default() };
-        let faces = specular.faces(Vec3::ZERO, Vec3::Y);
+        let boxes = Boxes16::new(&boxes);
+        let faces = boxes.faces(Vec3::ZERO, Vec3::Y);
         // Means of functions of direction over directions drawn, and over the sphere by their density.
         let functions = [|_: Vec3| 1.0, |d: Vec3| d.x * d.x, |d: Vec3| (d.z + 0.3) * d.y];
         let count = 1 << 16;
@@ -189,7 +188,7 @@ mod tests {
         }
         // The third box is below the horizon; all are from inside one of them.
         assert_eq!(faces.density(-Vec3::Y), Some(0.0));
-        let inside = specular.faces(Vec3::new(0.0, -8.5, 0.0), -Vec3::Y);
+        let inside = boxes.faces(Vec3::new(0.0, -8.5, 0.0), -Vec3::Y);
         assert!(inside.towards(0.5, Vec2::splat(0.5)).is_none() && inside.density(Vec3::X).is_none());
     }
 }

@@ -4,8 +4,8 @@
 //! corners instead waits for memory twice, and up to four times.
 
 use glam::{Vec2, Vec3};
-use scene::Scene;
 use scene::texture::uv_scale;
+use scene::{Mesh, Scene};
 
 /// The triangles of all meshes.
 pub(super) struct Triangles {
@@ -57,6 +57,16 @@ impl Triangles {
 }
 
 impl Triangle {
+    /// Returns the unit interpolated normal at barycentric weights `b` of corners 1 and 2; the triangle's own normal if the
+    /// mesh has none or they cancel.
+    #[inline]
+    pub fn shading_normal(&self, mesh: &Mesh, b: Vec2) -> Vec3 {
+        match mesh.normal(&self.vertices, b) {
+            Some(interpolated) => interpolated.try_normalize().unwrap_or(self.normal),
+            None => self.normal,
+        }
+    }
+
     /// Returns the point at barycentric weights `b` of corners 1 and 2.
     #[inline]
     pub fn position(&self, b: Vec2) -> Vec3 {

@@ -107,7 +107,7 @@ impl View {
 
     /// The same for sample `sample` of the pixel's, which a lens, if there is one, sends through a place of its own.
     #[inline]
-    pub fn sample_ray(&self, pixel: [u32; 2], jitter: Vec2, (seed, sample): (u32, u32)) -> Ray {
+    pub fn sample_ray(&self, pixel: [u32; 2], jitter: Vec2, seed: u32, sample: u32) -> Ray {
         let lens = match self.camera.projection {
             Projection::Lens { .. } => {
                 let seed = hash(hash(hash(pixel[0], pixel[1]), seed), LENS_SEED);

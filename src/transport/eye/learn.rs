@@ -9,7 +9,7 @@ use base::sampling::{Sampler, hash, owen_sobol_2d};
 use embree::Rays16;
 use glam::Vec3;
 use rayon::prelude::*;
-use world::light::{EnvironmentLight, LampLooks, Learned, LearnedSky, Looks, Receivers16};
+use world::light::{EmitterObservations, EnvironmentLight, Learned, Receivers16, SkyObservations};
 use world::shadow;
 
 /// Maximum number of eye paths.
@@ -55,7 +55,7 @@ impl Tracer<'_, '_> {
         }
         let works = Workspaces::new(|| self.workspace(None));
         let look = |(chunk, pixels): (usize, &[[u32; 2]])| {
-            let (mut sky, mut seen) = (Looks::default(), LampLooks::default());
+            let (mut sky, mut seen) = (SkyObservations::default(), EmitterObservations::default());
             if self.control.is_cancelled() {
                 return (sky, seen, EyeCounts::default());
             }
@@ -81,9 +81,10 @@ impl Tracer<'_, '_> {
             (sky, seen, chains)
         };
         let places = places(self.view.window.film, fewer);
-        let found: Vec<(Looks, LampLooks, EyeCounts)> =
+        let found: Vec<(SkyObservations, EmitterObservations, EyeCounts)> =
             places.par_chunks(CHUNK).one_by_one().enumerate().map(look).collect();
-        let (mut all, mut seen, mut chains) = (Looks::default(), LampLooks::default(), EyeCounts::default());
+        let (mut all, mut seen, mut chains) =
+            (SkyObservations::default(), EmitterObservations::default(), EyeCounts::default());
         for (mut looks, mut lamp_looks, traced) in found {
             chains += traced;
             all.points.append(&mut looks.points);
@@ -92,8 +93,8 @@ impl Tracer<'_, '_> {
             seen.rays.append(&mut lamp_looks.rays);
         }
         let learned = Learned {
-            sky: environment.map(|environment| LearnedSky::new(environment, &all)),
-            lamps: emitters.learn_lamps(&seen),
+            sky: environment.map(|environment| environment.learn(&all)),
+            emitters: emitters.learn_emitters(&seen),
         };
         Some((learned, chains))
     }
@@ -116,7 +117,7 @@ impl Tracer<'_, '_> {
             }
             let (position, normals) = (Vec3x16::splat(x), Vec3x16::splat(normal));
             let at = Receivers16 { position: &position, normal: &normals, learned: None };
-            let (chosen, samples) = self.world.emitters.sample_lamps(at, &choices, &u);
+            let (chosen, samples) = self.world.emitters.sample_without_environment(at, &choices, &u);
             let (mut segments, mut lit) = (Rays16::default(), 0u16);
             for lane in lanes_in(samples.useful()) {
                 let (direction, distance) = (samples.direction.get(lane), samples.distance[lane]);

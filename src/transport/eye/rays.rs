@@ -76,7 +76,7 @@ impl<'a, 'w> EyeRays<'a, 'w> {
     pub fn trace(&self, film_pixel: [u32; 2], sample: u32, pixel: u32, found: &mut VisibleSurfaces<'w>) {
         let EyeSettings { spp, seed, max_depth } = self.settings;
         let (mut sampler, jitter) = eye_sampler(film_pixel, seed, sample, spp);
-        let ray = self.world.behind_hidden(self.view.sample_ray(film_pixel, jitter, (seed, sample)));
+        let ray = self.world.behind_hidden(self.view.sample_ray(film_pixel, jitter, seed, sample));
         let VisibleSurfaces { points, visibility, chains: counts, .. } = found;
         let visit = |met: EdgeEnd<'w>| {
             if let EdgeEnd::Surface(vertex) = met

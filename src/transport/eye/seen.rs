@@ -147,8 +147,8 @@ impl FeatureSampler<'_> {
             for (lane, &(pixel, sample)) in packet.iter().enumerate() {
                 let FeatureSettings { estimand, seed, .. } = *self.settings;
                 let (sampler, jitter) = estimand.eye_sampler(film_pixels[pixel], seed, sample);
-                let of = estimand.numbers(seed, sample);
-                let ray = self.view.sample_ray(film_pixels[pixel], jitter, of);
+                let (seed, sample) = estimand.numbers(seed, sample);
+                let ray = self.view.sample_ray(film_pixels[pixel], jitter, seed, sample);
                 rays.set(lane, &self.world.behind_hidden(ray));
                 samplers[lane] = sampler;
             }

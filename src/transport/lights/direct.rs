@@ -37,7 +37,7 @@ pub fn direct_vpls(world: &World, settings: &LightPassSettings, control: &Contro
         let size = size_of_area(light.area / count as f32, world.diagonal);
         sizes[light.mesh as usize] = size;
         let patches = Patches { count, size, seed: hash(settings.seed, 0x0a1e_a000 ^ i as u32) };
-        add_area_light(world, light, patches, &mut oriented, control);
+        add_area_light(light, patches, &mut oriented, control);
     }
     let mut omni = VplSet::new(VplKind::Omni, Origin::Direct);
     let mut directional = VplSet::new(VplKind::Directional, Origin::Direct);
@@ -70,7 +70,7 @@ struct Patches {
     seed: u32,
 }
 
-fn add_area_light(world: &World, light: &AreaLight, patches: Patches, set: &mut VplSet, control: &Control) {
+fn add_area_light(light: &AreaLight, patches: Patches, set: &mut VplSet, control: &Control) {
     let area = light.area / patches.count as f32;
     set.reserve(patches.count as usize * if light.emission.two_sided { 2 } else { 1 });
     for i in (0..patches.count).take_while(|_| !control.is_cancelled()) {

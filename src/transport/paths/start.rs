@@ -55,8 +55,8 @@ pub fn start(
                 Estimand::Pixels => anywhere.get(i),
                 Estimand::EyeSamples { .. } => estimand.eye_sampler(path.pixel, path.seed, path.sample).1,
             };
-            let of = estimand.numbers(path.seed, path.sample);
-            rays.set(i, &world.behind_hidden(view.sample_ray(path.pixel, jitter, of)));
+            let (seed, sample) = estimand.numbers(path.seed, path.sample);
+            rays.set(i, &world.behind_hidden(view.sample_ray(path.pixel, jitter, seed, sample)));
         }
         batch.push(rays, samplers, cone, count);
     }

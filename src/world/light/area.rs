@@ -1,4 +1,4 @@
-//! Light from surfaces: the emitting triangles of one mesh, sampled uniformly by area.
+//! Area lights: the emitting triangles of one mesh, sampled uniformly by area.
 
 use super::distribution::DiscreteDistribution;
 use base::math::{Rgb, luminance};
@@ -11,13 +11,13 @@ use scene::{Emission, Scene, Texture, TextureId, Textures};
 pub struct AreaLight {
     /// Index of the mesh.
     pub mesh: u32,
-    /// Its emission.
+    /// Emission of the mesh.
     pub emission: Emission,
-    /// Total area of its triangles.
+    /// Total area of the triangles.
     pub area: f32,
-    /// Flux of all sides, W, as luminance (textured emission by its mean).
+    /// Flux of all emitting sides as luminance, W; the mean of a texture represents it.
     pub power: f32,
-    /// Greatest radiance of a channel that a point emits.
+    /// Maximum radiance of any channel at any point.
     greatest: f32,
     triangles: DiscreteDistribution,
     /// First corner, two edges and unit normal of each triangle.
@@ -69,7 +69,7 @@ pub struct AreaPoint {
     pub barycentric: Vec2,
 }
 
-/// Unit normal and area of a triangle; a zero normal if it has no area.
+/// Returns unit normal and area of a triangle; a zero normal if it has no area.
 pub fn normal_and_area(corners: [Vec3; 3]) -> (Vec3, f32) {
     let [a, b, c] = corners;
     let cross = (b - a).cross(c - a);
@@ -77,14 +77,14 @@ pub fn normal_and_area(corners: [Vec3; 3]) -> (Vec3, f32) {
     if length > 1e-15 && length < 1e15 {
         return (cross.normalize_or_zero(), 0.5 * length);
     }
-    // Its square is beyond f32.
+    // The squared length is out of the range of f32.
     let [a, b, c] = corners.map(Vec3::as_dvec3);
     let cross = (b - a).cross(c - a);
     (cross.normalize_or_zero().as_vec3(), (0.5 * cross.length()) as f32)
 }
 
 impl AreaLight {
-    /// Creates the light of mesh `index`, or `None` if it emits nothing.
+    /// Builds the light of mesh `index`; `None` if it emits nothing.
     pub fn new(scene: &Scene, index: u32) -> Option<AreaLight> {
         let mesh = &scene.meshes[index as usize];
         let emission = mesh.emission?;
@@ -132,20 +132,20 @@ impl AreaLight {
         }
     }
 
-    /// Chooses a triangle in proportion to its area; returns it, its first corner, edges from there and unit
-    /// normal, and the numbers left to choose a point on it.
+    /// Chooses a triangle in proportion to its area. Returns its index, its first corner, the edges from there and the unit
+    /// normal, and random numbers to choose a point on it.
     #[inline]
     pub(super) fn choose_triangle(&self, u: Vec2) -> (u32, [Vec3; 4], Vec2) {
         let (triangle, rest) = self.triangles.sample(u.x);
         (triangle as u32, self.shapes[triangle], Vec2::new(rest, u.y))
     }
 
-    /// Radiance that a point of the light emits over the greatest that any does, from 0 to 1.
+    /// Returns emitted radiance relative to the maximum of the light, from 0 to 1.
     pub fn relative(&self, emitted: Rgb) -> Rgb {
         (emitted / self.greatest).min(Rgb::ONE)
     }
 
-    /// First corner, two edges and unit normal of each triangle.
+    /// Returns first corner, two edges and unit normal of each triangle.
     pub(super) fn shapes(&self) -> &[[Vec3; 4]] {
         &self.shapes
     }

@@ -1,26 +1,27 @@
 //! Discrete distributions by cumulative sums.
 //!
-//! Sampling inverts the sums, so that it keeps the order of the numbers it is given (an alias table would not);
-//! a guide table narrows the search to a few entries, because in the large distributions of environment maps
-//! every step of a binary search is a cache miss.
+//! Sampling inverts the sums, which preserves the order of the random numbers (an alias table would not). A guide table
+//! narrows the search to a few entries, because every step of a binary search in the large distributions of environment
+//! maps is a cache miss.
 
 use std::ops::Range;
 
 /// A discrete distribution over `0..len`, in proportion to non-negative weights.
 #[derive(Clone, Debug)]
 pub struct DiscreteDistribution {
-    /// `cumulative[i]` = sum of the weights before `i`, over the total; the last entry is 1.
+    /// Sums of the weights before each outcome, over the total. The last entry is 1.
     cumulative: Vec<f32>,
-    /// Outcome at `i / (guide.len() - 1)`, from which a search starts.
+    /// Outcomes at `i / (guide.len() - 1)`, from which searches start.
     guide: Vec<u32>,
+    /// Sum of the weights.
     total: f64,
 }
 
-/// Mean number of outcomes per guide entry.
+/// Mean number of outcomes per entry of the guide table.
 const GUIDE_SPACING: usize = 2;
 
 impl DiscreteDistribution {
-    /// Builds the distribution with sums in f64; a total of zero makes an empty one that is never sampled.
+    /// Builds the distribution, with sums in f64. A total of zero makes an empty distribution, which must not be sampled.
     pub fn new(weights: impl IntoIterator<Item = f32>) -> DiscreteDistribution {
         let mut sum = 0.0f64;
         let mut sums = vec![0.0f64];
@@ -43,34 +44,34 @@ impl DiscreteDistribution {
         DiscreteDistribution { cumulative, guide, total: sum }
     }
 
-    /// Sum of the weights.
+    /// Returns the sum of the weights.
     pub fn total(&self) -> f64 {
         self.total
     }
 
-    /// Number of outcomes.
+    /// Returns the number of outcomes.
     pub fn len(&self) -> usize {
         self.cumulative.len() - 1
     }
 
-    /// Returns true if there is no outcome to draw.
+    /// Returns true if there is no outcome to sample.
     pub fn is_empty(&self) -> bool {
         self.len() == 0 || self.total <= 0.0
     }
 
-    /// Probability of outcome `i`.
+    /// Returns the probability of outcome `i`.
     #[inline]
     pub fn probability(&self, i: usize) -> f32 {
         if self.total > 0.0 { self.cumulative[i + 1] - self.cumulative[i] } else { 0.0 }
     }
 
-    /// Probability of the outcomes `range`.
+    /// Returns the probability of the outcomes in `range`.
     #[inline]
     pub fn span(&self, range: &Range<usize>) -> f32 {
         if self.total > 0.0 { self.cumulative[range.end] - self.cumulative[range.start] } else { 0.0 }
     }
 
-    /// [`DiscreteDistribution::sample`] among the outcomes `range`.
+    /// Samples among the outcomes in `range` (see [`DiscreteDistribution::sample`]).
     #[inline]
     pub fn sample_between(&self, range: &Range<usize>, u: f32) -> (usize, f32) {
         let u = self.cumulative[range.start] + u * self.span(range);
@@ -78,27 +79,27 @@ impl DiscreteDistribution {
         (i.clamp(range.start, range.end - 1), rest)
     }
 
-    /// Returns the outcome at `u` in [0, 1), and `u` stretched to [0, 1) within it.
+    /// Returns the outcome at `u` in [0, 1), and `u` rescaled to [0, 1) within it.
     ///
-    /// Never returns an outcome of probability zero unless all are.
+    /// Never returns an outcome of probability zero, unless all have it.
     #[inline]
     pub fn sample(&self, u: f32) -> (usize, f32) {
         self.search(u, self.bracket(u))
     }
 
-    /// Returns the range of outcomes that contains the one at `u`. A step of its own so that several searches
-    /// can be under way at once while each waits for memory.
+    /// Returns a range of outcomes that contains the outcome at `u`. It is a separate step so that several searches can wait
+    /// for memory together.
     #[inline]
     pub(super) fn bracket(&self, u: f32) -> Bracket {
         let spans = self.guide.len() - 1;
         let span = ((u * spans as f32) as usize).min(spans - 1);
-        // One before and one after, since `u` times the number of spans was rounded.
+        // The range has a margin of one entry on both sides, because `u` times the number of spans was rounded.
         let first = self.guide[span.saturating_sub(1)] as usize;
         let last = (self.guide[(span + 2).min(spans)] as usize + 1).min(self.len());
         Bracket { first, last }
     }
 
-    /// Finishes [`DiscreteDistribution::sample`] within a bracket.
+    /// Completes [`DiscreteDistribution::sample`] within a bracket.
     #[inline]
     pub(super) fn search(&self, u: f32, b: Bracket) -> (usize, f32) {
         let i = b.first + self.cumulative[b.first..=b.last].partition_point(|c| *c <= u);
@@ -109,7 +110,7 @@ impl DiscreteDistribution {
     }
 }
 
-/// A range of outcomes that contains the one searched for.
+/// A range of outcomes that contains the sampled one.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Bracket {
     first: usize,

@@ -1,12 +1,13 @@
-//! Knowledge by which emitters are sampled: what of them is seen from each region of the scene.
+//! Learned visibility of emitters, by region of the scene, which guides their sampling.
 
-use super::{LearnedLamps, LearnedSky};
+use super::environment::LearnedSky;
+use super::tree::LearnedEmitters;
 
-/// Knowledge gained before the picture.
+/// Visibility of emitters, learned before the image is rendered.
 #[derive(Clone, Debug, Default)]
 pub struct Learned {
-    /// Directions of the environment, if there is one.
+    /// Visibility of the environment, if there is one.
     pub sky: Option<LearnedSky>,
-    /// Lamps, if they are many.
-    pub lamps: Option<LearnedLamps>,
+    /// Visibility of the other emitters, if there are many.
+    pub emitters: Option<LearnedEmitters>,
 }

@@ -1,30 +1,33 @@
 //! Next-event estimation for sixteen points at once.
 
-use super::{AreaLight, DirectSample, Emitters, Receivers16, sample_delta};
+use super::area::AreaLight;
+use super::direct::DirectSample;
+use super::emitters::Emitters;
+use super::receivers::Receivers16;
 use base::math::{F32x16, LANES, Rgb, U32x16, Vec2x16, Vec3x16, lanes_in, mask_of};
 use base::sampling::uniform_triangle;
 use glam::Vec2;
 
-/// Light arriving at sixteen points; see [`super::DirectSample`] for the members.
+/// Light arriving at sixteen points; see [`super::DirectSample`] for the fields.
 #[derive(Clone, Debug, Default)]
 pub struct DirectSamples16 {
     /// Unit directions towards the light.
     pub direction: Vec3x16,
-    /// Distances to the emitter's points; infinite for light from infinitely far.
+    /// Distances to the emitters' points; infinite for light from infinitely far away.
     pub distance: F32x16,
-    /// Geometric normals at those points; zero where there is no surface.
+    /// Geometric normals at those points; zero if there is no surface.
     pub normal: Vec3x16,
     /// Radiances, or irradiances for delta lights.
     pub radiance: Vec3x16,
-    /// Densities per solid angle, or the probabilities of having chosen the delta light.
+    /// Densities per solid angle; for delta lights the probabilities of their choice.
     pub pdf: F32x16,
-    /// Not zero where the light is a delta light.
+    /// Not zero if the light is a delta light.
     pub delta: U32x16,
-    /// Not zero where the sample contributes.
+    /// Not zero if the sample contributes.
     useful: U32x16,
 }
 
-/// Points on emitting triangles, one a lane; lanes of zero area are those of other emitters.
+/// Points on emitting triangles, one per lane. Lanes of other emitters have zero area.
 #[derive(Default)]
 struct Triangles16 {
     corner: Vec3x16,
@@ -39,7 +42,7 @@ struct Triangles16 {
 }
 
 impl DirectSamples16 {
-    /// Mask of the lanes whose samples contribute.
+    /// Returns the lanes whose samples contribute.
     #[inline]
     pub fn useful(&self) -> u16 {
         mask_of(&self.useful)
@@ -60,7 +63,7 @@ impl DirectSamples16 {
 }
 
 impl Emitters {
-    /// Samples light arriving at points in the lanes of `wanted`, without testing visibility.
+    /// Samples light arriving at points in the lanes of `wanted`, without a visibility test.
     #[inline]
     pub fn sample_direct(
         &self,
@@ -69,11 +72,11 @@ impl Emitters {
         u: &Vec2x16,
         wanted: u16,
     ) -> DirectSamples16 {
-        let (chosen, choice) = self.selection.sample(self, at, u_choice, wanted);
+        let (chosen, choice) = self.choice.sample(at, u_choice, wanted);
         self.sample_chosen(at, &chosen, &choice, u, wanted)
     }
 
-    /// [`Emitters::sample_direct`] in all lanes, where the emitter chosen `is_wanted`; returns the emitters, too.
+    /// Samples light in all lanes whose chosen emitter is `is_wanted`. Returns the chosen emitters, too.
     pub fn sample_of(
         &self,
         at: Receivers16,
@@ -81,13 +84,18 @@ impl Emitters {
         u: &Vec2x16,
         is_wanted: impl Fn(u32) -> bool,
     ) -> (U32x16, DirectSamples16) {
-        let (chosen, choice) = self.selection.sample(self, at, u_choice, u16::MAX);
+        let (chosen, choice) = self.choice.sample(at, u_choice, u16::MAX);
         let wanted = mask_of(&chosen.map(|emitter| u32::from(is_wanted(emitter))));
         (chosen, self.sample_chosen(at, &chosen, &choice, u, wanted))
     }
 
-    /// [`Emitters::sample_of`] all but the environment.
-    pub fn sample_lamps(&self, at: Receivers16, u_choice: &F32x16, u: &Vec2x16) -> (U32x16, DirectSamples16) {
+    /// Samples light in all lanes whose chosen emitter is not the environment. Returns the chosen emitters, too.
+    pub fn sample_without_environment(
+        &self,
+        at: Receivers16,
+        u_choice: &F32x16,
+        u: &Vec2x16,
+    ) -> (U32x16, DirectSamples16) {
         self.sample_of(at, u_choice, u, |emitter| emitter != self.environment_index())
     }
 
@@ -123,7 +131,9 @@ impl Emitters {
         let mut far = 0;
         for lane in lanes_in(rest) {
             match self.deltas.get(chosen[lane] as usize - self.areas.len()) {
-                Some(light) => samples.set(lane, sample_delta(light, at.position.get(lane), choice[lane])),
+                Some(light) => {
+                    samples.set(lane, DirectSample::delta(light, at.position.get(lane), choice[lane]))
+                }
                 None => far |= 1 << lane,
             }
         }
@@ -133,6 +143,7 @@ impl Emitters {
         samples
     }
 
+    /// Samples the environment in the lanes of `wanted`.
     fn sample_environment(
         &self,
         at: Receivers16,
@@ -142,18 +153,19 @@ impl Emitters {
         samples: &mut DirectSamples16,
     ) {
         let Some(environment) = &self.environment else { return };
-        let drawn = environment.sample16(
+        let sampled = environment.sample16(
             u,
             wanted,
             at.learned.and_then(|l| l.sky.as_ref()).map(|sky| (sky, at.position)),
         );
         for lane in lanes_in(wanted) {
-            samples.set(lane, drawn[lane].map(|s| s.direct(choice[lane])));
+            samples.set(lane, sampled[lane].map(|s| DirectSample::environment(&s, choice[lane])));
         }
     }
 }
 
 impl Triangles16 {
+    /// Chooses a triangle of a light for a lane, by the random numbers `u`.
     #[inline]
     fn set(&mut self, lane: usize, light: &AreaLight, u: Vec2) {
         let (triangle, [corner, e1, e2, normal], u) = light.choose_triangle(u);
@@ -168,8 +180,7 @@ impl Triangles16 {
         self.barycentric.set(lane, u);
     }
 
-    /// Maps the numbers of the unit square in `barycentric` to barycentric weights, and samples the light
-    /// from there.
+    /// Maps the random numbers in `barycentric` to barycentric weights, and samples the light from these points.
     #[inline]
     fn sample(&mut self, x: &Vec3x16, choice: &F32x16) -> DirectSamples16 {
         let mut s = DirectSamples16 { normal: self.normal, radiance: self.radiance, ..Default::default() };

@@ -9,34 +9,37 @@ const LEAF: u32 = 3;
 /// A kd-tree.
 #[derive(Clone, Debug)]
 pub struct Regions {
-    /// Nodes; the first child follows its parent.
-    nodes: Vec<Node>,
-    /// Branches on the way to the deepest leaf.
+    /// Nodes. The first child follows its parent.
+    nodes: Vec<RegionNode>,
+    /// Number of branches on the way to the deepest leaf.
     depth: u32,
 }
 
 #[derive(Clone, Copy, Debug)]
-struct Node {
-    /// Coordinate from which on points are the second child's.
+struct RegionNode {
+    /// Coordinate at and above which points belong to the second child.
     plane: f32,
-    /// Axis in the lowest two bits, [`LEAF`] for a leaf; above them the second child, or the region.
+    /// Axis in the lowest two bits, [`LEAF`] for a leaf. The other bits hold the second child, or the region of a leaf.
     word: u32,
 }
 
 impl Regions {
-    /// Halves the points along the widest axis until they are `few` at most. Returns the points in each region, too.
-    pub fn new(points: &[Vec3], few: usize) -> (Regions, Vec<Vec<u32>>) {
+    /// Halves the points along the widest axis until regions hold at most `most` points. Returns the points in each region,
+    /// too.
+    pub fn new(points: &[Vec3], most: usize) -> (Regions, Vec<Vec<u32>>) {
         let mut order: Vec<u32> = (0..points.len() as u32).collect();
         let (mut regions, mut members) = (Regions { nodes: Vec::new(), depth: 0 }, Vec::new());
-        regions.split(points, few, (&mut order, 0), &mut members);
+        regions.split(points, most, &mut order, 0, &mut members);
         (regions, members)
     }
 
+    /// Adds the nodes over the points in `order`, which lie `depth` branches below the root, and their `members`.
     fn split(
         &mut self,
         points: &[Vec3],
-        few: usize,
-        (order, depth): (&mut [u32], u32),
+        most: usize,
+        order: &mut [u32],
+        depth: u32,
         members: &mut Vec<Vec<u32>>,
     ) {
         let at = |i: &u32| points[*i as usize];
@@ -44,8 +47,8 @@ impl Regions {
         let high = order.iter().map(at).fold(Vec3::NEG_INFINITY, Vec3::max);
         let axis = (high - low).max_position();
         let own = self.nodes.len();
-        if order.len() <= few || !(high[axis] > low[axis]) {
-            self.nodes.push(Node { plane: 0.0, word: LEAF | (members.len() as u32) << 2 });
+        if order.len() <= most || !(high[axis] > low[axis]) {
+            self.nodes.push(RegionNode { plane: 0.0, word: LEAF | (members.len() as u32) << 2 });
             self.depth = self.depth.max(depth);
             members.push(order.to_vec());
             return;
@@ -53,21 +56,21 @@ impl Regions {
         let middle = order.len() / 2;
         order.select_nth_unstable_by(middle, |a, b| at(a)[axis].total_cmp(&at(b)[axis]).then(a.cmp(b)));
         let (left, right) = order.split_at_mut(middle);
-        // Midway, so that what lies on a wall of the scene to within rounding has the region of its points.
+        // The plane is midway between points, so that rounding moves no point of a wall into another region.
         let [below, above] = [left.iter().map(at).fold(low, Vec3::max)[axis], at(&right[0])[axis]];
         let midway = below + 0.5 * (above - below);
-        self.nodes.push(Node { plane: if midway > below { midway } else { above }, word: 0 });
-        self.split(points, few, (left, depth + 1), members);
+        self.nodes.push(RegionNode { plane: if midway > below { midway } else { above }, word: 0 });
+        self.split(points, most, left, depth + 1, members);
         self.nodes[own].word = axis as u32 | (self.nodes.len() as u32) << 2;
-        self.split(points, few, (right, depth + 1), members);
+        self.split(points, most, right, depth + 1, members);
     }
 
-    /// Region of a point.
+    /// Returns the region of a point.
     #[inline]
     pub fn of(&self, x: Vec3) -> usize {
         let mut node = 0;
         loop {
-            let Node { plane, word } = self.nodes[node];
+            let RegionNode { plane, word } = self.nodes[node];
             match word & LEAF {
                 LEAF => return (word >> 2) as usize,
                 axis if x[axis as usize] < plane => node += 1,
@@ -76,14 +79,14 @@ impl Regions {
         }
     }
 
-    /// Regions of sixteen points. They go down the tree together, as far as the deepest goes: nothing depends on where
-    /// the others go, so that they wait for memory together.
+    /// Returns the regions of sixteen points. All lanes descend to the depth of the deepest leaf, so that they wait for memory
+    /// together.
     #[inline]
     pub fn find(&self, x: &Vec3x16) -> [usize; LANES] {
         let (mut node, rows) = ([0; LANES], x.rows());
         for _ in 0..self.depth {
             for lane in 0..LANES {
-                let Node { plane, word } = self.nodes[node[lane]];
+                let RegionNode { plane, word } = self.nodes[node[lane]];
                 let axis = word & LEAF;
                 let inner = if rows[axis.min(2) as usize][lane] < plane {
                     node[lane] + 1

@@ -1,10 +1,11 @@
 //! The choice among few and many emitters of all kinds, against brute force.
 
 use super::*;
-use base::math::{Vec2x16, Vec3x16};
+use base::math::{LANES, Rgb, Vec2x16, Vec3x16, luminance};
 use base::sampling::{Sampler, uniform_sphere};
-use glam::Vec2;
-use scene::{Emission, Environment, MaterialId, Mesh};
+use glam::{Vec2, Vec3};
+use scene::{DeltaLight, Emission, Environment, MaterialId, Mesh, Scene};
+use std::f32::consts::PI;
 
 /// Numbers of emitters that are all candidates, and that are more than those.
 const COUNTS: [usize; 4] = [5, 32, 60, 400];
@@ -75,18 +76,18 @@ fn emitters(scene: &Scene) -> Emitters {
 /// Knowledge that two of three lamps are hidden from all points of positive x.
 fn learned(emitters: &Emitters) -> Learned {
     let count = emitters.environment_index();
-    let mut looks = LampLooks::default();
+    let mut observations = EmitterObservations::default();
     for point in 0..4096 {
         let mut sampler = Sampler::new(8, point);
         let (place, z) = (sampler.next_2d(), sampler.next_1d());
         let x = 14.0 * place.extend(z) - 7.0;
-        looks.points.push(x);
-        looks.rays.extend((0..32).map(|ray| {
+        observations.points.push(x);
+        observations.rays.extend((0..32).map(|ray| {
             let lamp = (point * 32 + ray) * 97 % count;
             (ray % 3 > 0).then_some((lamp, is_seen(lamp as usize, x)))
         }));
     }
-    Learned { sky: None, lamps: emitters.learn_lamps(&looks) }
+    Learned { sky: None, emitters: emitters.learn_emitters(&observations) }
 }
 
 fn is_seen(lamp: usize, x: Vec3) -> bool {
@@ -97,7 +98,7 @@ fn is_seen(lamp: usize, x: Vec3) -> bool {
 fn probabilities(emitters: &Emitters, (x, n): (Vec3, Vec3), learned: Option<&Learned>) -> Vec<f32> {
     let (x, n) = (Vec3x16::splat(x), Vec3x16::splat(n));
     let at = Receivers16 { position: &x, normal: &n, learned };
-    let one = |i| emitters.selection.probability(emitters, at, &[i; LANES], 1)[0];
+    let one = |i| emitters.choice.probability(at, &[i; LANES], 1)[0];
     (0..=emitters.environment_index()).map(one).collect()
 }
 
@@ -143,7 +144,7 @@ fn frequencies_are_the_probabilities_and_all_that_shines_can_be_chosen() {
             let mut none = 0;
             for first in (0..DRAWS).step_by(LANES) {
                 let u = std::array::from_fn(|i| (first + i) as f32 / DRAWS as f32);
-                let (chosen, choice) = emitters.selection.sample(&emitters, at, &u, u16::MAX);
+                let (chosen, choice) = emitters.choice.sample(at, &u, u16::MAX);
                 for (emitter, choice) in chosen.iter().zip(choice) {
                     if choice > 0.0 {
                         drawn[*emitter as usize] += 1;
@@ -260,7 +261,7 @@ fn densities_of_points_are_those_of_sampling_them() {
             for i in 0..LANES {
                 places.set(i, sampler.next_2d());
             }
-            let (chosen, _) = emitters.selection.sample(&emitters, at, &choices, u16::MAX);
+            let (chosen, _) = emitters.choice.sample(at, &choices, u16::MAX);
             let lights = emitters.sample_direct(at, &choices, &places, u16::MAX);
             for i in base::math::lanes_in(lights.useful()) {
                 let Some(light) = emitters.areas.get(chosen[i] as usize) else { continue };

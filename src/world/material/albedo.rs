@@ -13,7 +13,7 @@ pub(super) fn albedo_table(facets: &Microfacets, fresnel: &Fresnel) -> AngleTabl
     AngleTable::new(|wo| albedo(facets, fresnel, wo, &rule))
 }
 
-/// Integrates the light from `wo`, in the xz plane, that single scattering on the facets reflects back to its side.
+/// Integrates the share of the light from `wo`, in the xz plane, that single scattering on the facets reflects.
 pub(super) fn albedo(facets: &Microfacets, fresnel: &Fresnel, wo: Vec3, rule: &[(f32, f32)]) -> Rgb {
     facets.mean_over_visible(wo, rule, |h| {
         let cos = wo.dot(h);

@@ -1,24 +1,24 @@
-//! Materials with the same lobes and coat, at sixteen points at once: [`Bsdf::eval`] and [`Bsdf::bound`] as loops over
-//! lanes that compile to vector code.
+//! Materials with the same lobes and coat at sixteen points at once: [`Bsdf::eval`] and [`Bsdf::bound`] as loops over lanes
+//! that compile to vector code.
 
 use super::lobe::{DirectionBounds16, Directions16, FacetBounds16, LobeLanes, MAX_LOBES};
 use super::model::{Bsdf, Model};
 use base::math::{F32x16, LANES, Vec3x16};
 use glam::Vec3;
 
-/// Sixteen materials that differ in nothing but colour, each seen from one direction on the side of its normal.
+/// Sixteen materials that differ only in colour, each seen from one direction on the side of its normal.
 #[derive(Clone, Copy, Debug)]
 pub struct AlikeBsdfs16<'m> {
     model: &'m Model,
     wo: Vec3x16,
-    /// BRDFs of the bases, for light that has passed the coat on its way in.
+    /// BRDFs of the bases, times the coat's transmittance for `wo`.
     base: Vec3x16,
     lobes: [LobeLanes; MAX_LOBES],
 }
 
 impl<'m> AlikeBsdfs16<'m> {
-    /// Takes the materials `at(lane)`, each with its `wo` (z >= 0); `None` if they are not uniform, or
-    /// transmit light.
+    /// Collects the material and its `wo` (z >= 0) that `at` returns for each lane. Returns `None` if the lobes or coats
+    /// differ, or a material transmits light.
     pub fn new(at: impl Fn(usize) -> (Bsdf<'m>, Vec3)) -> Option<AlikeBsdfs16<'m>> {
         let first = at(0).0;
         let zero = Vec3x16::default();
@@ -34,7 +34,7 @@ impl<'m> AlikeBsdfs16<'m> {
                 return None;
             }
             all.wo.set(lane, wo);
-            // Seen edge-on nothing is reflected.
+            // A surface that is seen edge-on reflects nothing.
             if wo.z > 0.0 {
                 all.base.set(lane, bsdf.base * bsdf.coat_transmittance(wo.z));
                 for (slot, lobe) in bsdf.model.lobes.iter().enumerate() {
@@ -80,12 +80,13 @@ impl<'m> AlikeBsdfs16<'m> {
         most
     }
 
-    /// Returns the share of the light at each cosine that passes the coat; 1 where there is none.
+    /// Returns the share of the light at each cosine that passes the coat; 1 if there is none.
     #[inline]
     pub fn coat_transmittance(&self, cos: &F32x16) -> F32x16 {
         self.model.base.interface.transmittance16(cos)
     }
 
+    /// Returns the BRDFs of the bases times a factor per lane.
     #[inline(always)]
     fn base_times(&self, factor: &F32x16) -> Vec3x16 {
         let mut product = Vec3x16::default();

@@ -1,10 +1,9 @@
 //! The Lambertian base of a material, under a dielectric coat if it has one.
 //!
-//! Definitions are those of Mitsuba's `plastic` and `roughplastic`: the base is attenuated by the coat's transmittance
-//! on the way in and out, and light is reflected to and fro between base and coat.
-//! Deviations: none from `roughplastic` by intent, which means taking its rules over: tables of 64 cosines, evenly
-//! spaced from grazing to normal incidence, linear between; single scattering only; the internal reflectance is the
-//! plain mean over those 64 cosines.
+//! Definitions are those of Mitsuba's `plastic` and `roughplastic`. The coat's transmittance attenuates the base on the way
+//! in and out, and light is reflected back and forth between base and coat.
+//! Rules are those of `roughplastic`, too: tables of 64 cosines, evenly spaced and linear between them; single scattering
+//! only; the internal reflectance is the plain mean over the 64 cosines.
 
 use super::albedo::albedo;
 use super::fresnel;
@@ -16,16 +15,17 @@ use scene::{Coat, Fresnel};
 use std::f32::consts::{FRAC_1_PI, PI};
 use std::sync::Arc;
 
-/// Base without its colour.
+/// Base without its colour, and the coat on it.
 #[derive(Clone, Debug)]
 pub(super) struct BaseModel {
     pub interface: CoatInterface,
-    /// Cosine-weighted mean of the coat's transmittance; 1 without a coat.
+    /// Cosine-weighted mean of the coat's transmittance; 1 if there is no coat.
     mean_transmittance: f32,
-    /// Share of the base's light that the coat sends back inside.
+    /// Share of the base's light that the coat reflects back to it.
     internal_reflectance: f32,
-    /// BRDF over albedo, without the transmittances by angle and the gain of internal reflection.
+    /// BRDF per albedo, without the transmittances and the gain of internal reflection.
     factor: f32,
+    /// True if internal reflection shifts the colour.
     nonlinear: bool,
 }
 
@@ -34,15 +34,16 @@ pub(super) struct BaseModel {
 pub(super) enum CoatInterface {
     /// There is no coat.
     None,
-    /// Smooth, of this index.
+    /// Smooth interface of this index of refraction.
     Smooth(f32),
-    /// That of the principled material's base, which has no index: it takes half of the light at grazing angles.
+    /// Attenuation of the principled material's base, which takes half of the light at grazing angles.
     Burley,
+    /// Rough interface.
     Rough(Arc<RoughCoat>),
 }
 
 impl PartialEq for CoatInterface {
-    /// Returns true if the same light reaches the base.
+    /// Returns true if both pass the same light.
     fn eq(&self, other: &CoatInterface) -> bool {
         match (self, other) {
             (CoatInterface::None, CoatInterface::None) | (CoatInterface::Burley, CoatInterface::Burley) => {
@@ -56,7 +57,7 @@ impl PartialEq for CoatInterface {
 }
 
 impl CoatInterface {
-    /// Returns the share of the light at `cos` > 0 that passes; 1 where there is no coat.
+    /// Returns the share of the light at `cos` > 0 that passes; 1 if there is no coat.
     #[inline]
     pub fn transmittance(&self, cos: f32) -> f32 {
         match self {
@@ -76,7 +77,7 @@ impl CoatInterface {
         }
     }
 
-    /// Returns [`CoatInterface::transmittance`] in all lanes, cosines below the horizon as at it.
+    /// Returns [`CoatInterface::transmittance`] in all lanes. Cosines below 0 count as 0.
     #[inline]
     pub fn transmittance16(&self, cos: &F32x16) -> F32x16 {
         let mut passes = [1.0; LANES];
@@ -99,13 +100,13 @@ impl CoatInterface {
 }
 
 impl BaseModel {
-    /// Makes the base under `coat`, whose surface is `interface`.
+    /// Builds the base under `coat`, whose surface is `interface`.
     pub fn new(coat: Option<Coat>, interface: CoatInterface) -> BaseModel {
         let (mean_transmittance, internal_reflectance) = match &interface {
             CoatInterface::None => (1.0, 0.0),
             CoatInterface::Burley => (1.0 - 1.0 / 42.0, 0.0),
-            // 1 - the mean reflectance outside follows from that inside by reciprocity; the fit inside is
-            // the one that sets the base's brightness, so both come from it.
+            // By reciprocity the mean transmittance outside follows from the reflectance inside. The fit inside determines
+            // the brightness of the base, so both come from it.
             CoatInterface::Smooth(eta) => {
                 let internal = fresnel::diffuse_reflectance(1.0 / eta);
                 (eta * eta * (1.0 - internal), internal)
@@ -122,7 +123,7 @@ impl BaseModel {
         !self.nonlinear || self.internal_reflectance == 0.0
     }
 
-    /// Returns the BRDF, less the coat's transmittances by angle.
+    /// Returns the BRDF without the coat's transmittances.
     #[inline]
     pub fn brdf(&self, albedo: Rgb) -> Rgb {
         if self.internal_reflectance == 0.0 {
@@ -132,17 +133,17 @@ impl BaseModel {
         albedo * self.factor / (1.0 - returned * self.internal_reflectance)
     }
 
-    /// Returns the share of the light from one direction that leaves again, given the coat's transmittance for it.
+    /// Returns the share of the light from one direction that is reflected, for the coat's transmittance in that direction.
     #[inline]
     pub fn albedo(&self, brdf: Rgb, transmittance: f32) -> Rgb {
         brdf * (PI * transmittance * self.mean_transmittance)
     }
 }
 
-/// Rough dielectric interface over the base.
+/// Tables of a rough dielectric interface over the base.
 #[derive(Clone, Debug)]
 pub(super) struct RoughCoat {
-    /// Share of the light from a direction outside that enters.
+    /// Share of the light from outside that enters.
     transmittance: AngleTable<f32>,
     /// Maximum transmittance at this or any smaller cosine.
     max_transmittance: AngleTable<f32>,
@@ -151,8 +152,9 @@ pub(super) struct RoughCoat {
 }
 
 impl RoughCoat {
+    /// Tabulates an interface of the given microfacets and index of refraction.
     pub fn new(facets: &Microfacets, eta: f32) -> RoughCoat {
-        // Beyond the critical angle the integrand has a kink, hence more nodes towards the rarer side.
+        // The integrand has a kink at the critical angle, which needs more nodes.
         let (coarse, fine) = (rule(32), rule(128));
         let (outside_rule, inside_rule) = if eta > 1.0 { (&coarse, &fine) } else { (&fine, &coarse) };
         let transmittance = AngleTable::new(|wo| transmittance(facets, eta, wo, outside_rule));

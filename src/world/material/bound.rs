@@ -1,6 +1,6 @@
 //! Upper bounds of BSDF · cosine over sets of directions, for clusters of lights.
 //!
-//! Paper: Walter et al., *Lightcuts*, 2005, section 4.1, for the use made of such bounds.
+//! Paper: Walter et al., *Lightcuts*, 2005, section 4.1.
 
 use super::lobe::{DirectionBound, FacetBound};
 use super::model::Bsdf;
@@ -8,11 +8,10 @@ use base::math::Rgb;
 use glam::Vec3;
 
 impl Bsdf<'_> {
-    /// Returns an upper bound, per channel, of `eval(wo, wi)` · cos θ_i over all `wi` within `bound` on the
-    /// side of `wo`.
+    /// Returns an upper bound, per channel, of `eval(wo, wi)` · cos θ_i over all `wi` within `bound` on the side of `wo`.
     ///
-    /// NaN in a bound counts as not knowing. Exact for a Lambertian surface at `cos_i_max`. Delta lobes are
-    /// not included, as they are not in `eval`.
+    /// The bound is exact for a Lambertian surface at `cos_i_max`. It excludes delta lobes, as `eval` does. NaN in `bound`
+    /// means that nothing is known.
     #[inline]
     pub fn bound(&self, wo: Vec3, bound: &DirectionBound) -> Rgb {
         let cos_max = bound.cos_i_max.min(1.0);

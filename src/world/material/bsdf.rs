@@ -9,16 +9,16 @@ use glam::Vec3;
 use scene::MaterialId;
 use std::f32::consts::{FRAC_1_PI, PI};
 
-/// Some of the lobes of a BSDF.
+/// Set of some of a material's lobes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct LobeSet(u8);
 
-/// Direction and the quantities that depend on it alone.
+/// Direction towards the eye and the quantities that depend on it alone.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Outgoing {
-    /// On the side of the normal, so z > 0, unless light may be transmitted.
+    /// Direction on the side of the normal (z > 0), unless light may be transmitted.
     pub wo: Vec3,
-    /// Of the coat.
+    /// Transmittance of the coat.
     pub transmittance: f32,
     /// Probability of sampling the base.
     pub base_probability: f32,
@@ -27,12 +27,13 @@ pub(super) struct Outgoing {
 }
 
 impl LobeSet {
-    /// Returns true if there is none.
+    /// Returns true if the set is empty.
     #[inline]
     pub fn is_empty(self) -> bool {
         self.0 == 0
     }
 
+    /// Returns true if the lobe in a slot is in the set.
     #[inline(always)]
     fn has(self, slot: usize) -> bool {
         self.0 >> slot & 1 != 0
@@ -40,14 +41,13 @@ impl LobeSet {
 }
 
 impl<'m> Bsdf<'m> {
-    /// Returns the BSDF for light from `wi` seen from `wo`, which may be on different sides; 0 where no lobe scatters
-    /// from one to the other. Delta lobes are excluded.
+    /// Returns the value for light from `wi` seen from `wo`, without delta lobes. The directions may be on different sides.
     #[inline]
     pub fn eval(&self, wo: Vec3, wi: Vec3) -> Rgb {
         self.eval_pdf(wo, wi).0
     }
 
-    /// Returns the density with which [`Bsdf::sample`] chooses `wi`, delta lobes excluded.
+    /// Returns the density with which [`Bsdf::sample`] samples `wi`, without delta lobes.
     #[inline]
     pub fn pdf(&self, wo: Vec3, wi: Vec3) -> f32 {
         self.eval_pdf(wo, wi).1
@@ -73,23 +73,24 @@ impl<'m> Bsdf<'m> {
         self.base != Rgb::ZERO || self.has_smooth_lobe()
     }
 
-    /// Returns true if part of the light is reflected as by a mirror or refracted as by smooth glass.
+    /// Returns true if the material has delta lobes.
     #[inline]
     pub fn has_delta(&self) -> bool {
         self.model.kinds.delta
     }
 
-    /// Returns true if part of the light goes on as by a mirror or refracted, in another direction than it comes in.
+    /// Returns true if part of the light is reflected as by a mirror or refracted into another direction.
     pub fn bends_light(&self) -> bool {
         self.any_lobe(LobeModel::bends)
     }
 
-    /// Returns true if part of the light is reflected by lobes too sharp to pass for diffuse.
+    /// Returns true if part of the light is reflected by rough lobes too sharp to count as diffuse.
     pub fn is_glossy(&self) -> bool {
         self.any_lobe(LobeModel::is_glossy)
     }
 
-    /// Returns the delta lobes and those too sharp to pass for diffuse alone, if there are any of the latter.
+    /// Returns the part of the delta lobes and of the lobes too sharp to count as diffuse; `None` if there are no such sharp
+    /// lobes.
     #[inline]
     pub fn glossy_part(&self) -> Option<Self> {
         let dull = self.lobes(|lobe| !lobe.is_glossy() && !lobe.is_delta());
@@ -97,7 +98,7 @@ impl<'m> Bsdf<'m> {
         glossy.then(|| Bsdf { base: Rgb::ZERO, ..*self }.without(dull))
     }
 
-    /// Returns true if part of the light goes on to the other side in more than isolated directions.
+    /// Returns true if part of the light is scattered to the other side in more than isolated directions.
     pub fn scatters_across(&self) -> bool {
         self.model.kinds.transmit && self.any_lobe(LobeModel::scatters_across)
     }
@@ -107,7 +108,8 @@ impl<'m> Bsdf<'m> {
         self.any_lobe(LobeModel::passes_straight)
     }
 
-    /// Returns the BSDF without its sharp lobes, and these alone, if there are any.
+    /// Splits the material into the part without sharp lobes and the part of the sharp lobes; `None` if there are no sharp
+    /// lobes.
     #[inline]
     pub fn split_sharp_lobes(&self) -> Option<(Self, Self)> {
         let sharp = self.sharp_lobes();
@@ -115,7 +117,7 @@ impl<'m> Bsdf<'m> {
         (!sharp.is_empty()).then(|| (self.without(sharp), without_base.without(LobeSet(!sharp.0))))
     }
 
-    /// Returns the sharp lobes that reflect anything: rough lobes of α ≤ 0.1, which eye paths follow by sampling them.
+    /// Returns the sharp lobes that reflect anything: rough lobes that eye paths follow by sampling.
     #[inline]
     pub fn sharp_lobes(&self) -> LobeSet {
         self.lobes(LobeModel::is_sharp)
@@ -127,15 +129,16 @@ impl<'m> Bsdf<'m> {
         self.lobes(|lobe| !lobe.is_delta())
     }
 
+    /// Returns the lobes that have a property and a factor other than 0.
     #[inline(always)]
-    fn lobes(&self, is_such: impl Fn(&LobeModel) -> bool) -> LobeSet {
-        let mut such = 0;
+    fn lobes(&self, property: impl Fn(&LobeModel) -> bool) -> LobeSet {
+        let mut found = 0;
         if self.model.kinds.smooth {
             for (slot, lobe) in self.model.lobes.iter().enumerate() {
-                such |= u8::from(self.scales[slot] != Rgb::ZERO && is_such(lobe)) << slot;
+                found |= u8::from(self.scales[slot] != Rgb::ZERO && property(lobe)) << slot;
             }
         }
-        LobeSet(such)
+        LobeSet(found)
     }
 
     /// Returns the BSDF without some of its lobes.
@@ -148,7 +151,7 @@ impl<'m> Bsdf<'m> {
         rest
     }
 
-    /// Returns the part of [`Bsdf::eval`] that some of the lobes have in it.
+    /// Returns the part of [`Bsdf::eval`] that is due to some of the lobes.
     #[inline]
     pub fn eval_lobes(&self, lobes: LobeSet, wo: Vec3, wi: Vec3) -> Rgb {
         let side = self.side(wo);
@@ -169,14 +172,14 @@ impl<'m> Bsdf<'m> {
         self.model.lambert
     }
 
-    /// Returns the number of the coat on the base (see [`super::Materials::coat_transmittance`]); 0 for none.
+    /// Returns the number of the coat on the base (see [`super::Materials::coat_transmittance`]); 0 if there is none.
     #[inline]
     pub fn coat(&self) -> u32 {
         self.model.coat
     }
 
-    /// Splits base and lobes, where both are smooth functions of direction: the BRDF of the base for light that has
-    /// passed the coat on its way in, seen from the cosine `cos_out`; and the rest, if it reflects anything.
+    /// Splits the material into base and smooth lobes. Returns the BRDF of the base, times the coat's transmittance for the
+    /// cosine `cos_out`, and the part of the lobes, if they reflect anything.
     #[inline]
     pub fn split_base(&self, cos_out: f32) -> (Rgb, Option<Self>) {
         let base = self.base * self.coat_transmittance(cos_out.abs());
@@ -201,19 +204,19 @@ impl<'m> Bsdf<'m> {
         self.model.material
     }
 
-    /// True of [`super::Materials::average`] where the roughness is textured.
+    /// Returns true if the roughness is textured and the material stands for its mean (see
+    /// [`super::Materials::average`]).
     pub fn is_of_mean_roughness(&self) -> bool {
         self.model.mean_roughness
     }
 
-    /// Returns true if the lobes agree but for their factors.
+    /// Returns true if the lobes differ in their factors only.
     #[inline]
     pub fn same_lobes(&self, other: &Bsdf) -> bool {
         self.model.lobe_list == other.model.lobe_list
     }
 
-    /// Lists slot and model of each lobe that reflects anything in more than isolated directions and that the eye does
-    /// not follow.
+    /// Lists slot and model of each lobe that is neither a delta lobe nor a sharp lobe and reflects anything.
     pub fn dull_lobes(&self) -> impl Iterator<Item = (usize, DullLobe<'m>)> {
         let lobes = self.model.lobes.iter().zip(self.scales).enumerate();
         let is_dull = |lobe: &LobeModel| !lobe.is_sharp() && !lobe.is_delta();
@@ -234,15 +237,14 @@ impl<'m> Bsdf<'m> {
         self.scales[slot]
     }
 
-    /// Returns the share of the light at `cos` > 0 that passes the coat; 1 where there is none.
+    /// Returns the share of the light at `cos` > 0 that passes the coat; 1 if there is none.
     #[inline]
     pub fn coat_transmittance(&self, cos: f32) -> f32 {
         self.model.base.interface.transmittance(cos)
     }
 
-    /// Returns the share of the flux from `wi` that a virtual light in this place radiates diffusely, to the side
-    /// of `wi`: what the base reflects (through the coat, if there is one, in and out) and what those lobes reflect
-    /// that are rough enough to pass for diffuse. Paths find the rest.
+    /// Returns the share of the flux from `wi` that a virtual light at this point radiates diffusely to the side of `wi`: the
+    /// reflection by the base, through the coat, and by the lobes rough enough to count as diffuse. Paths carry the rest.
     ///
     /// The virtual light's intensity per cosine is flux · `diffuse_albedo` / π.
     #[inline]
@@ -260,14 +262,14 @@ impl<'m> Bsdf<'m> {
         albedo
     }
 
-    /// Lists the part of that which lobes reflect that a virtual light should not radiate diffusely.
+    /// Lists the reflections by lobes that a virtual light must not radiate diffusely, though the lobes are rough.
     pub fn reflected_lobes(&self, wi: Vec3) -> impl Iterator<Item = ReflectedLobe> {
         let cos = wi.z * self.side(wi);
         let lobes = self.model.lobes.iter().zip(self.scales);
         lobes.filter_map(move |(lobe, scale)| if cos > 0.0 { lobe.reflected(scale, cos) } else { None })
     }
 
-    /// Share of the light from `wo` that is scattered, delta lobes excluded.
+    /// Returns the share of the light from `wo` that is scattered, without delta lobes.
     pub fn albedo(&self, wo: Vec3) -> Rgb {
         let cos = wo.z * self.side(wo);
         if !(cos > 0.0) {
@@ -280,12 +282,12 @@ impl<'m> Bsdf<'m> {
         albedo
     }
 
-    /// Returns [`Bsdf::albedo`] seen from the cosine `cos` on the side of the viewer.
+    /// Returns [`Bsdf::albedo`] at the cosine `cos` on the side of the viewer.
     pub fn albedo_at(&self, cos: f32) -> Rgb {
         self.albedo(Vec3::new(0.0, 0.0, cos.clamp(0.01, 1.0)))
     }
 
-    /// Returns the mean with another BSDF of the same lobes, by weights of each channel.
+    /// Returns the mean with another material of the same lobes, weighted per channel.
     pub fn mean(&self, weight: Rgb, other: &Bsdf, other_weight: Rgb) -> Self {
         let total = weight + other_weight;
         let share = Rgb::select(total.cmpgt(Rgb::ZERO), other_weight / total, Rgb::ZERO);
@@ -296,35 +298,36 @@ impl<'m> Bsdf<'m> {
         mean
     }
 
-    /// Returns true if `is_such` of a lobe that scatters anything.
+    /// Returns true if a lobe of a factor other than 0 has a property.
     #[inline(always)]
-    fn any_lobe(&self, is_such: impl Fn(&LobeModel) -> bool) -> bool {
+    fn any_lobe(&self, property: impl Fn(&LobeModel) -> bool) -> bool {
         let mut found = false;
         for (slot, lobe) in self.model.lobes.iter().enumerate() {
-            found |= self.scales[slot] != Rgb::ZERO && is_such(lobe);
+            found |= self.scales[slot] != Rgb::ZERO && property(lobe);
         }
         found
     }
 
+    /// Returns true if a lobe scatters into more than isolated directions.
     #[inline]
     fn has_smooth_lobe(&self) -> bool {
         self.model.kinds.smooth && self.any_lobe(|lobe| !lobe.is_delta())
     }
 
-    /// Returns the factor that turns the z of directions to the side of the normal: -1 if a two-sided surface
-    /// is seen from behind.
+    /// Returns the factor on the z of directions that turns them to the side of the normal: -1 if a two-sided surface is seen
+    /// from behind.
     #[inline]
     pub(super) fn side(&self, wo: Vec3) -> f32 {
         if wo.z < 0.0 && self.model.two_sided && !self.model.kinds.transmit { -1.0 } else { 1.0 }
     }
 
-    /// Computes the part of [`Bsdf::eval_pdf_layered`] and of sampling that depends on `wo` alone.
+    /// Computes the quantities of evaluation and sampling that depend on `wo` alone.
     #[inline(always)]
     pub(super) fn outgoing(&self, wo: Vec3) -> Outgoing {
         let transmittance = self.coat_transmittance(wo.z);
-        // Light that passes gaps in a surface may come to its back.
+        // Light that passes gaps in a surface may reach its back.
         let base = if wo.z > 0.0 { mean(self.model.base.albedo(self.base, transmittance)) } else { 0.0 };
-        // Most materials have one lobe at most.
+        // Most materials have at most one lobe.
         let (base_probability, probabilities) = match &self.model.lobes[..] {
             [] => (if base > 0.0 { 1.0 } else { 0.0 }, [0.0; MAX_LOBES]),
             [lobe] => {
@@ -355,14 +358,15 @@ impl<'m> Bsdf<'m> {
         let mut left = 1.0 - base_probability;
         let last = self.model.lobes.len() - 1;
         for slot in 0..last {
-            probabilities[slot] = weights[slot] / total; // NaN (nothing is scattered at all) chooses nothing
+            probabilities[slot] = weights[slot] / total; // NaN, if nothing is scattered, chooses nothing.
             left -= probabilities[slot];
         }
-        // The last lobe takes the rest, so that rounding loses nothing.
+        // The last lobe takes the remainder, so that rounding loses nothing.
         probabilities[last] = left.max(0.0);
         (base_probability, probabilities)
     }
 
+    /// Returns value and density of a material that is more than Lambertian.
     #[inline(always)]
     pub(super) fn eval_pdf_layered(&self, outgoing: &Outgoing, wi: Vec3) -> (Rgb, f32) {
         if !self.model.kinds.smooth {
@@ -374,9 +378,10 @@ impl<'m> Bsdf<'m> {
         }
     }
 
+    /// Pairs two directions; `None` if no facet reflects one into the other and no light is transmitted.
     #[inline(always)]
     fn directions(&self, wo: Vec3, wi: Vec3) -> Option<Directions> {
-        // Of opposite directions refraction makes no use of the facet between them.
+        // Refraction does not use the facet between opposite directions.
         let opposite = || self.model.kinds.transmit.then_some(Directions { wo, wi, half: Vec3::Z });
         Directions::new(wo, wi).or_else(opposite)
     }

@@ -1,40 +1,40 @@
 //! Unpolarised reflectance of smooth interfaces.
 //!
-//! Paper: the Fresnel equations in any optics text; the diffuse average by Egan and Hilgeman, *Spectral
-//! reflectance of particulate materials*, 1973, and d'Eon and Irving, *A Quantized-Diffusion Model for
-//! Rendering Translucent Materials*, 2011.
+//! Papers: the diffuse average follows Egan and Hilgeman, *Spectral reflectance of particulate materials*, 1973, and d'Eon
+//! and Irving, *A Quantized-Diffusion Model for Rendering Translucent Materials*, 2011.
 
 use base::math::{F32x16, LANES, Rgb, Vec3x16};
 use scene::Fresnel;
 
 /// Reflection and refraction of a ray at a smooth dielectric interface.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Interface {
+pub(super) struct Refraction {
     /// Share of the power that is reflected.
     pub reflectance: f32,
-    /// Cosine of the refracted ray against the normal on its own side, >= 0; 0 at total reflection.
+    /// Cosine of the refracted ray to the normal on its side, >= 0; 0 at total reflection.
     pub cos_t: f32,
     /// Index of refraction on the far side over that on the ray's side.
     pub eta: f32,
 }
 
-/// Solves a dielectric interface of `eta` = index below over above the normal for a ray on the side `cos_i` says.
+/// Solves a dielectric interface for a ray on the side that the sign of `cos_i` tells. `eta` is the index of refraction
+/// behind the normal over the index in front.
 #[inline]
-pub(super) fn interface(cos_i: f32, eta: f32) -> Interface {
+pub(super) fn interface(cos_i: f32, eta: f32) -> Refraction {
     let eta_it = if cos_i >= 0.0 { eta } else { 1.0 / eta };
     let inv_eta = 1.0 / eta_it;
     let cos_i = cos_i.abs().min(1.0);
     let cos_t_sq = 1.0 - inv_eta * inv_eta * (1.0 - cos_i * cos_i);
     if eta == 1.0 {
-        return Interface { reflectance: 0.0, cos_t: cos_i, eta: 1.0 };
+        return Refraction { reflectance: 0.0, cos_t: cos_i, eta: 1.0 };
     }
     if cos_t_sq <= 0.0 || cos_i == 0.0 {
-        return Interface { reflectance: 1.0, cos_t: cos_t_sq.max(0.0).sqrt(), eta: eta_it };
+        return Refraction { reflectance: 1.0, cos_t: cos_t_sq.max(0.0).sqrt(), eta: eta_it };
     }
     let cos_t = cos_t_sq.sqrt();
     let r_s = (cos_i - eta_it * cos_t) / (cos_i + eta_it * cos_t);
     let r_p = (cos_t - eta_it * cos_i) / (cos_t + eta_it * cos_i);
-    Interface { reflectance: 0.5 * (r_s * r_s + r_p * r_p), cos_t, eta: eta_it }
+    Refraction { reflectance: 0.5 * (r_s * r_s + r_p * r_p), cos_t, eta: eta_it }
 }
 
 /// Returns the reflectance of a dielectric seen from the side of the normal.
@@ -47,22 +47,23 @@ pub(super) fn dielectric(cos_i: f32, eta: f32) -> f32 {
 #[inline]
 pub(super) fn conductor(cos_i: f32, eta: Rgb, k: Rgb) -> Rgb {
     let cos_i = cos_i.clamp(0.0, 1.0);
-    // One lane stays idle; without branches the four run as one vector.
+    // Four channels without branches compile to one vector; the last is unused.
     let (eta, k) = ([eta.x, eta.y, eta.z, 1.0], [k.x, k.y, k.z, 1.0]);
     let [r, g, b, _] = std::array::from_fn(|i| conductor_channel(cos_i, eta[i], k[i]));
     Rgb::new(r, g, b)
 }
 
+/// Returns the reflectance of a conductor in one channel.
 #[inline]
 fn conductor_channel(cos_i: f32, eta: f32, k: f32) -> f32 {
     let cos_sq = cos_i * cos_i;
     let sin_sq = 1.0 - cos_sq;
-    // The complex cosine of refraction times the index is a + i b: modulus = a² + b², and a² is half of
-    // modulus + difference, rewritten where that would cancel, as it does for metals.
+    // The complex cosine of refraction times the index is a + i b. Its squared modulus is a² + b², and a² is half of
+    // modulus + difference, rewritten to avoid the cancellation that occurs for metals.
     let difference = eta * eta - k * k - sin_sq;
     let cross = 2.0 * eta * k;
     let modulus = (difference * difference + cross * cross).sqrt();
-    // The floors, here and below, only turn 0/0 into 0 or 1.
+    // The floors here and below only turn 0/0 into 0 or 1.
     let sum = (modulus + difference.abs()).max(1e-30);
     let twice_a_sq = if difference >= 0.0 { sum } else { cross * (cross / sum) };
     let a = (0.5 * twice_a_sq).sqrt();
@@ -73,12 +74,12 @@ fn conductor_channel(cos_i: f32, eta: f32, k: f32) -> f32 {
     (0.5 * (r_s + r_p)).clamp(0.0, 1.0)
 }
 
-/// Returns the cosine-weighted average of the reflectance over the hemisphere, for light on the side where `eta` is
-/// the far index over the near one: the fits that Mitsuba's `plastic` uses, good to 0.2 % for common indices.
+/// Returns the cosine-weighted mean of the reflectance over the hemisphere, by the fits that Mitsuba's `plastic` uses.
+/// `eta` is the index of refraction on the far side over that on the light's side. The error is 0.2 % for common indices.
 pub(super) fn diffuse_reflectance(eta: f32) -> f32 {
     let inv = 1.0 / eta;
     if eta < 1.0 {
-        // Egan and Hilgeman, in terms of 1/η as they print it.
+        // Egan and Hilgeman.
         -1.4399 * eta * eta + 0.7099 * eta + 0.6681 + 0.0636 * inv
     } else {
         // d'Eon and Irving, a polynomial in 1/η.
@@ -87,20 +88,20 @@ pub(super) fn diffuse_reflectance(eta: f32) -> f32 {
     }
 }
 
-/// Weight of the reflectance at grazing incidence in Schlick's approximation.
+/// Returns the weight of the reflectance at grazing incidence in Schlick's approximation.
 #[inline]
 pub(super) fn schlick_weight(cos: f32) -> f32 {
     let m = (1.0 - cos).clamp(0.0, 1.0);
     m * m * (m * m) * m
 }
 
-/// Schlick's approximation between given reflectances at normal and grazing incidence.
+/// Returns Schlick's approximation between the reflectances at normal and grazing incidence.
 #[inline]
 fn schlick(cos: f32, normal: Rgb, edge: f32) -> Rgb {
     normal + (Rgb::splat(edge) - normal) * schlick_weight(cos)
 }
 
-/// Curve of a (micro)surface's reflectance over the angle of incidence.
+/// Reflectance of a (micro)surface by angle of incidence.
 pub(super) trait Curve {
     /// Returns the reflectance for light at `cos_i` to the (micro)surface's normal, on its front side.
     fn reflectance(&self, cos_i: f32) -> Rgb;
@@ -110,8 +111,8 @@ pub(super) trait Curve {
 
     /// Returns the maximum reflectance at any cosine >= `cos_min`, given the reflectance `normal` at normal incidence.
     ///
-    /// A dielectric's reflectance grows towards grazing. A conductor's may first fall from its value at normal
-    /// incidence, then rises to 1. Schlick's goes from one end to the other. So the larger of the ends bounds them.
+    /// The larger of the values at both ends is the maximum: a dielectric's reflectance grows towards grazing incidence, a
+    /// conductor's may first fall and then rises to 1, and Schlick's approximation is monotonic.
     fn max_reflectance(&self, cos_min: f32, normal: Rgb) -> Rgb;
 }
 

@@ -1,15 +1,15 @@
 //! Isotropic microfacet distributions: density, Smith masking and sampling of visible normals.
 //!
-//! Masking is kept as `V1 = G1 / (2 cos θ)`, which stays finite at the horizon where G1 / cos θ is 0/0; the
-//! reflection lobe is then `F D V1(wo) V1(wi)` and the density of sampling it `D V1(wo) / 2`.
+//! Masking is expressed as `V1 = G1 / (2 cos θ)`, which stays finite at the horizon, where G1 / cos θ is 0/0. The reflection
+//! lobe is then `F D V1(wo) V1(wi)` and its sampling density `D V1(wo) / 2`.
 //!
 //! Paper: Walter et al., *Microfacet Models for Refraction through Rough Surfaces*, 2007 (D, G1); Heitz and
 //! d'Eon, *Importance Sampling Microfacet-Based BSDFs using the Distribution of Visible Normals*, 2014;
 //! Heitz, *Sampling the GGX Distribution of Visible Normals*, 2018; Giles, *Approximating the
 //! erfinv function*, 2010; Abramowitz and Stegun 7.1.26 (erfc).
-//! Deviations: Beckmann's masking in the BSDF is Walter's rational fit (as Mitsuba's is), but the sampling
-//! density uses the exact function, because visible normals are distributed by that one; the sample's weight
-//! makes up for the difference (up to 0.35 %).
+//! Deviations: Beckmann's masking in the BSDF is Walter's rational fit, as in Mitsuba. The sampling density uses the exact
+//! function, which is the one that visible normals follow. The weight of a sample accounts for the difference (up to
+//! 0.35 %).
 
 use base::math::{F32x16, LANES, Rgb};
 use base::sampling::uniform_disk;
@@ -17,11 +17,13 @@ use glam::{Vec2, Vec3};
 use scene::Distribution;
 use std::f32::consts::FRAC_1_PI;
 
+/// 1 / √π.
 const FRAC_1_SQRT_PI: f32 = 0.564_189_6;
-/// Roughness given to smoother surfaces; a perfect mirror is a lobe of its own.
+
+/// Minimum roughness α. A perfect mirror is a lobe of its own.
 pub(super) const MIN_ALPHA: f32 = 1e-4;
 
-/// Distribution of given roughness.
+/// Microfacet distribution of a given roughness.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Microfacets {
     pub distribution: Distribution,
@@ -30,6 +32,7 @@ pub(super) struct Microfacets {
 }
 
 impl Microfacets {
+    /// Makes the distribution of roughness `alpha`.
     pub fn new(distribution: Distribution, alpha: f32) -> Microfacets {
         let alpha = alpha.max(MIN_ALPHA);
         Microfacets { distribution, alpha, alpha_sq: alpha * alpha }
@@ -51,8 +54,8 @@ impl Microfacets {
                 FRAC_1_PI / (a2 * t * t)
             }
             Distribution::Beckmann => {
-                // The floor keeps cos⁴ representable; D there is 0 to any precision, as it is below e⁻⁵⁰,
-                // where subnormal numbers would only cost time.
+                // The floor keeps cos⁴ representable. D is 0 to single precision there, and below e⁻⁵⁰, where subnormal
+                // numbers would only be slow.
                 let cos_sq = cos_sq.max(1e-16);
                 let exponent = sin_sq / (a2 * cos_sq);
                 if exponent > 50.0 {
@@ -67,7 +70,7 @@ impl Microfacets {
     #[inline]
     pub fn max_density(&self, sin_sq: f32) -> f32 {
         let a2 = self.alpha_sq;
-        // D falls with inclination except on very rough surfaces, where it has a maximum further out.
+        // D decreases with inclination, but has its maximum farther out on very rough surfaces.
         let peak = match self.distribution {
             Distribution::Ggx if a2 > 1.0 => 1.0,
             Distribution::Beckmann if a2 > 0.5 => 1.0 - 0.5 / a2,
@@ -97,7 +100,7 @@ impl Microfacets {
         density
     }
 
-    /// Returns G1 / (2 cos θ) of the BSDF for a direction at `cos` > 0.
+    /// Returns V1 = G1 / (2 cos θ) of the BSDF for a direction at `cos` > 0.
     #[inline]
     pub fn v1(&self, cos: f32) -> f32 {
         let sin_sq = (1.0 - cos * cos).max(0.0);
@@ -114,7 +117,7 @@ impl Microfacets {
         }
     }
 
-    /// Returns the G1 / (2 cos θ) that normalises the density of visible normals.
+    /// Returns the V1 that normalises the density of visible normals.
     #[inline]
     pub fn v1_exact(&self, cos: f32) -> f32 {
         match self.distribution {
@@ -122,7 +125,7 @@ impl Microfacets {
             Distribution::Beckmann => {
                 let alpha_sin = self.alpha * (1.0 - cos * cos).max(0.0).sqrt();
                 if cos >= 5.0 * alpha_sin {
-                    return 0.5 / cos; // exp(-25) is below rounding
+                    return 0.5 / cos; // exp(-25) is below rounding.
                 }
                 let a = cos / alpha_sin;
                 let scaled_erfc = scaled_erfc(a);
@@ -137,7 +140,7 @@ impl Microfacets {
         let g1 = 2.0 * cos_max * self.v1(cos_max);
         match self.distribution {
             Distribution::Ggx => g1,
-            // Walter's fit overshoots 1 by 7e-5 shortly before it is cut off.
+            // Walter's fit exceeds 1 by 7e-5 shortly before its cut-off.
             Distribution::Beckmann => g1.max(if g1 > 0.99 { 1.0001 } else { 0.0 }),
         }
     }
@@ -155,8 +158,8 @@ impl Microfacets {
         }
     }
 
-    /// Integrates the mean of `f(h)` over the facet normals seen from `wo`, by a product rule of `nodes`
-    /// (even) nodes each way; `wo` is in the xz plane and `f` symmetric about it, so one half is enough.
+    /// Integrates the mean of `f(h)` over the facet normals seen from `wo`, by a product rule. `rule` has an even number of
+    /// nodes, `wo` lies in the xz plane, and `f` is symmetric about it, so that one half is enough.
     pub fn mean_over_visible(&self, wo: Vec3, rule: &[(f32, f32)], f: impl Fn(Vec3) -> Rgb) -> Rgb {
         let stretched = Vec3::new(self.alpha * wo.x, self.alpha * wo.y, wo.z).normalize();
         let half = &rule[..rule.len() / 2];
@@ -182,7 +185,7 @@ impl Microfacets {
     fn visible_ggx_normal(&self, stretched: Vec3, u: Vec2) -> Vec3 {
         let across = Vec3::new(-stretched.y, stretched.x, 0.0).try_normalize().unwrap_or(Vec3::Y);
         let up = stretched.cross(across);
-        // The hemisphere seen from there: a half disk above, a half ellipse below.
+        // The projected hemisphere is a half disk above and a half ellipse below.
         let mut p = uniform_disk(u);
         let s = 0.5 * (1.0 + stretched.z);
         p.y = (1.0 - s) * (1.0 - p.x * p.x).max(0.0).sqrt() + s * p.y;
@@ -191,7 +194,7 @@ impl Microfacets {
         Vec3::new(self.alpha * n.x, self.alpha * n.y, n.z.max(0.0)).try_normalize().unwrap_or(Vec3::Z)
     }
 
-    /// Returns the normal of a facet whose slopes along and across the view are given for unit roughness.
+    /// Returns the normal of a facet from its slopes along and across the view, for unit roughness.
     #[inline]
     fn normal_from_slopes(&self, stretched: Vec3, along: f32, across: f32) -> Vec3 {
         let sin = (stretched.x * stretched.x + stretched.y * stretched.y).sqrt();
@@ -202,19 +205,19 @@ impl Microfacets {
     }
 }
 
-/// Samples the slope across the view of a facet of unit roughness; being visible does not depend on it.
+/// Samples the slope of a visible facet across the view, for unit roughness. Visibility does not depend on it.
 #[inline]
 fn gaussian_slope(u: f32) -> f32 {
     erf_inv(2.0 * u.clamp(1e-7, 1.0 - 1e-7) - 1.0)
 }
 
-/// Samples the slope along the viewing direction of a visible facet of unit roughness: distributed as
-/// (cos θ - x sin θ)⁺ exp(-x²), inverted by Newton's method within a bracket.
+/// Samples the slope of a visible facet along the view, for unit roughness. The distribution (cos θ - x sin θ)⁺ exp(-x²) is
+/// inverted by Newton's method within a bracket.
 fn visible_gaussian_slope(stretched: Vec3, u: f32) -> f32 {
     let cos = stretched.z;
     let sin = (stretched.x * stretched.x + stretched.y * stretched.y).sqrt();
     let u = u.clamp(1e-7, 1.0 - 1e-7);
-    // Unnormalised distribution function times 2.
+    // Twice the unnormalised distribution function.
     let cdf = |x: f32| {
         let gauss = (-x * x).exp();
         let tail = gauss * scaled_erfc(x.abs());
@@ -239,13 +242,13 @@ fn visible_gaussian_slope(stretched: Vec3, u: f32) -> f32 {
         let step = error / slope;
         x -= step;
         if step.abs() < 3e-4 {
-            break; // convergence is quadratic: the next step would be lost in rounding
+            break; // Convergence is quadratic: the next step would be lost in rounding.
         }
     }
     x.clamp(-4.5, 4.5)
 }
 
-/// Returns exp(x²) erfc(x) for x >= 0, to 1.5e-7 of erfc.
+/// Returns exp(x²) erfc(x) for x >= 0, with an error of at most 1.5e-7 in erfc.
 #[inline]
 fn scaled_erfc(x: f32) -> f32 {
     let t = 1.0 / (1.0 + 0.327_591_1 * x);

@@ -1,5 +1,4 @@
-//! Materials at sixteen points at once: Lambertian ones, most of most scenes, in all lanes together, the others
-//! one after the other.
+//! Materials at sixteen points at once. Lambertian materials are evaluated in all lanes together, others one by one.
 
 use super::model::Bsdf;
 use base::math::{F32x16, LANES, Rgb, U32x16, Vec2x16, Vec3x16, lanes_in, mask_of};
@@ -12,17 +11,17 @@ use std::f32::consts::{FRAC_1_PI, PI};
 pub struct Bsdfs16<'m> {
     lanes: [Bsdf<'m>; LANES],
     wo: Vec3x16,
-    /// BRDFs of the Lambertian lanes.
+    /// BRDF of each Lambertian lane.
     base: Vec3x16,
-    /// -1 where a two-sided surface is seen from behind, else 1.
+    /// -1 if a two-sided surface is seen from behind, else 1.
     side: F32x16,
-    /// Lanes that are more than a Lambertian surface.
+    /// Lanes whose materials are more than Lambertian.
     layered: u16,
     /// Lanes that scatter into more than isolated directions.
     smooth: u16,
 }
 
-/// Sampled directions; see [`super::lobe::BsdfSample`] for the members.
+/// Sampled directions; see [`super::lobe::BsdfSample`] for the fields.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct BsdfSamples16 {
     /// Unit directions.
@@ -33,14 +32,14 @@ pub struct BsdfSamples16 {
     pub pdf: F32x16,
     /// Ratios of indices of refraction.
     pub eta: F32x16,
-    /// Not zero where the path goes on.
+    /// Not zero if the path continues.
     pub goes_on: U32x16,
-    /// Not zero where it goes straight on, as if there was no surface but for the light's colour.
+    /// Not zero if the path continues straight through the surface.
     straight: U32x16,
 }
 
 impl<'m> Bsdfs16<'m> {
-    /// Takes the materials `at(lane)`, seen from `wo`.
+    /// Collects the materials that `at` returns for each lane, seen from `wo`.
     #[inline]
     pub fn new(wo: Vec3x16, at: impl FnMut(usize) -> Bsdf<'m>) -> Bsdfs16<'m> {
         let lanes: [Bsdf; LANES] = std::array::from_fn(at);
@@ -71,8 +70,8 @@ impl<'m> Bsdfs16<'m> {
         self.smooth
     }
 
-    /// Reduces those of `lanes` that have lobes too sharp to pass for diffuse to these and to delta lobes. Returns
-    /// them.
+    /// Reduces materials in `lanes` to their delta lobes and the lobes too sharp to count as diffuse, if they have such
+    /// sharp lobes. Returns the lanes of these materials.
     #[inline]
     pub fn keep_glossy(&mut self, lanes: u16) -> u16 {
         let mut glossy = 0;
@@ -92,13 +91,13 @@ impl<'m> Bsdfs16<'m> {
         &self.lanes[lane]
     }
 
-    /// Returns the direction that a lane is seen from.
+    /// Returns the direction from which a lane is seen.
     #[inline]
     pub fn wo(&self, lane: usize) -> Vec3 {
         self.wo.get(lane)
     }
 
-    /// Returns [`Bsdf::eval_pdf`] in all lanes; those not in `wanted` may be left at anything.
+    /// Returns [`Bsdf::eval_pdf`] in the lanes of `wanted`; other lanes are undefined.
     #[inline]
     pub fn eval_pdf(&self, wi: &Vec3x16, wanted: u16) -> (Vec3x16, F32x16) {
         let (mut value, mut pdf) = (Vec3x16::default(), [0.0; LANES]);
@@ -116,7 +115,7 @@ impl<'m> Bsdfs16<'m> {
         (value, pdf)
     }
 
-    /// Returns [`Bsdf::sample`] in all lanes; those not in `wanted` may be left at anything.
+    /// Returns [`Bsdf::sample`] in the lanes of `wanted`; other lanes are undefined.
     #[inline]
     pub fn sample(&self, u_lobe: &F32x16, u: &Vec2x16, wanted: u16) -> BsdfSamples16 {
         let mut s = BsdfSamples16::default();
@@ -151,13 +150,13 @@ impl BsdfSamples16 {
         mask_of(&self.pdf.map(|pdf| u32::from(pdf == f32::INFINITY)))
     }
 
-    /// Returns the lanes that go straight on.
+    /// Returns the lanes where the path continues straight through the surface.
     #[inline]
     pub fn straight(&self) -> u16 {
         mask_of(&self.straight)
     }
 
-    /// Returns the lanes where the path goes on.
+    /// Returns the lanes where the path continues.
     #[inline]
     pub fn going_on(&self) -> u16 {
         mask_of(&self.goes_on)

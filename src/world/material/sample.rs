@@ -1,5 +1,5 @@
-//! Sampling of directions in proportion to their contribution: base or lobe by their expected shares of the
-//! light, cosine-weighted for the base, by its own rule for a lobe.
+//! Sampling of directions. Base or lobe is chosen by its estimated albedo; the base is sampled by the cosine, a lobe by its
+//! own rule.
 
 use super::bsdf::Outgoing;
 use super::lobe::{BsdfSample, MAX_LOBES};
@@ -9,20 +9,20 @@ use base::sampling::cosine_hemisphere;
 use glam::{Vec2, Vec3};
 use std::f32::consts::{FRAC_1_PI, PI};
 
-/// All directions in which light continues without being spread, for following specular chains
-/// deterministically: each weight is the lobe's reflectance or transmittance, each pdf is 1.
+/// All delta lobes of a material, for following specular chains without randomness. Each weight is the lobe's reflectance
+/// or transmittance, and each pdf is 1.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct DeltaLobes {
-    /// As by a mirror.
+    /// Specular reflection.
     pub reflection: Option<BsdfSample>,
-    /// Through glass.
+    /// Specular refraction or straight transmission.
     pub refraction: Option<BsdfSample>,
 }
 
 impl Bsdf<'_> {
-    /// Chooses `wi` with [`Bsdf::pdf`] (or a delta lobe): `u_lobe` picks base or lobe, `u` the direction.
+    /// Samples `wi` with density [`Bsdf::pdf`], or a delta lobe. `u_lobe` chooses base or lobe, `u` the direction.
     ///
-    /// `None` where nothing is scattered, or the facet chosen sends the light into the surface: the path ends.
+    /// Returns `None` if nothing is scattered or the sampled facet reflects light into the surface: the path ends.
     #[inline]
     pub fn sample(&self, wo: Vec3, u_lobe: f32, u: Vec2) -> Option<BsdfSample> {
         let side = self.side(wo);
@@ -41,6 +41,7 @@ impl Bsdf<'_> {
         Some(sample)
     }
 
+    /// Samples a material that is more than Lambertian.
     fn sample_layered(&self, wo: Vec3, u_lobe: f32, u: Vec2) -> Option<BsdfSample> {
         let outgoing = self.outgoing(wo);
         let smooth = |wi: Vec3, eta: f32, (value, pdf): (Rgb, f32)| {
@@ -63,7 +64,7 @@ impl Bsdf<'_> {
         (pdf > 0.0).then_some(BsdfSample { weight: sample.weight / pdf, pdf, ..sample })
     }
 
-    /// Returns the slot of the lobe that `u_lobe`, beyond the base's probability, picks.
+    /// Returns the slot of the lobe that `u_lobe`, beyond the base's probability, chooses.
     #[inline]
     fn pick(&self, outgoing: &Outgoing, u_lobe: f32) -> Option<usize> {
         let last = self.model.lobes.len().checked_sub(1)?;
@@ -77,8 +78,8 @@ impl Bsdf<'_> {
         Some(last)
     }
 
-    /// Share of the light at the cosine `cos` to the shading normal, of either sign, that passes straight through the
-    /// surface.
+    /// Returns the share of the light that passes straight through the surface at the cosine `cos` to the shading normal,
+    /// of either sign.
     #[inline]
     pub fn straight_transmittance(&self, cos: f32) -> Rgb {
         let wo = Vec3::new(0.0, 0.0, cos);
@@ -93,12 +94,12 @@ impl Bsdf<'_> {
         let mut all = DeltaLobes::default();
         for (slot, lobe) in self.model.lobes.iter().enumerate() {
             let Some(mut sample) = lobe.delta(self.scales[slot], wo) else { continue };
-            let way =
+            let lobe =
                 if (sample.wi.z > 0.0) == (wo.z > 0.0) { &mut all.reflection } else { &mut all.refraction };
             sample.wi.z *= side;
-            match way {
-                Some(known) => known.weight += sample.weight,
-                None => *way = Some(sample),
+            match lobe {
+                Some(other) => other.weight += sample.weight,
+                None => *lobe = Some(sample),
             }
         }
         all

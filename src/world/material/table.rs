@@ -29,7 +29,7 @@ impl<T: Copy + Send + Add<Output = T> + Sub<Output = T> + Mul<f32, Output = T>> 
         a + (b - a) * (x - i as f32)
     }
 
-    /// Returns the entry at or next below `cos`.
+    /// Returns the entry at `cos` or the nearest entry below.
     #[inline]
     pub fn floor(&self, cos: f32) -> T {
         self.0[((cos * (ANGLES - 1) as f32) as usize).min(ANGLES - 1)]
@@ -54,7 +54,7 @@ pub(super) fn direction(i: usize) -> Vec3 {
     Vec3::new((1.0 - cos * cos).max(0.0).sqrt(), 0.0, cos)
 }
 
-/// Returns nodes and weights of quadrature on [0, 1].
+/// Returns nodes and weights of Gauss-Legendre quadrature on [0, 1].
 pub(super) fn rule(nodes: usize) -> Vec<(f32, f32)> {
     gauss_legendre(nodes).iter().map(|&(x, weight)| (x as f32, weight as f32)).collect()
 }

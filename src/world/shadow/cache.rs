@@ -37,7 +37,7 @@ pub struct OccluderCache {
     ways: usize,
     /// Number of slots - 1.
     mask: u32,
-    slots: Vec<Slot>,
+    slots: Vec<CacheSlot>,
     /// `ROWS` rows of `ways` numbers for each slot.
     triangles: Vec<f32>,
     ids: Vec<TriangleId>,
@@ -46,7 +46,7 @@ pub struct OccluderCache {
 
 /// State of a slot; its content is void unless it is of the cache's generation.
 #[derive(Clone, Copy, Debug, Default)]
-struct Slot {
+struct CacheSlot {
     generation: u32,
     /// Index of the way that is replaced next.
     next: u32,
@@ -60,7 +60,7 @@ impl OccluderCache {
         OccluderCache {
             ways,
             mask: slots as u32 - 1,
-            slots: vec![Slot::default(); slots],
+            slots: vec![CacheSlot::default(); slots],
             triangles: vec![0.0; slots * ways * ROWS],
             ids: vec![TriangleId::NONE; slots * ways],
             generation: 1,
@@ -71,7 +71,7 @@ impl OccluderCache {
     pub fn forget(&mut self) {
         self.generation = self.generation.wrapping_add(1);
         if self.generation == 0 {
-            self.slots.fill(Slot::default());
+            self.slots.fill(CacheSlot::default());
             self.generation = 1;
         }
     }
@@ -105,12 +105,12 @@ impl OccluderCache {
     fn search<const W: usize>(&self, slot: usize, ray: &Ray) -> Option<Occluder> {
         let rows = &self.triangles[slot * W * ROWS..][..W * ROWS];
         let ids = &self.ids[slot * W..][..W];
-        let reach = Reach::of(ray);
+        let extent = RayExtent::of(ray);
         let mut hits = [false; W];
         let mut t = [0.0; W];
         for w in 0..W {
             let triangle = CachedTriangle::from_rows(|row| rows[row * W + w]);
-            (hits[w], t[w]) = certain(&triangle, ray, reach);
+            (hits[w], t[w]) = certain(&triangle, ray, extent);
         }
         let w = hits.iter().position(|&hit| hit)?;
         Some(Occluder { t: t[w], geometry: ids[w].geometry, primitive: ids[w].primitive })
@@ -126,7 +126,7 @@ impl OccluderCache {
             // Triangles of no extent occlude nothing.
             ids.fill(TriangleId::NONE);
             self.triangles[slot * self.ways * ROWS..][..self.ways * ROWS].fill(0.0);
-            *state = Slot { generation: self.generation, next: 0 };
+            *state = CacheSlot { generation: self.generation, next: 0 };
         }
         if ids.contains(&id) {
             return;
@@ -172,17 +172,17 @@ impl CachedTriangle {
 
 /// Largest coordinates of a ray.
 #[derive(Clone, Copy)]
-struct Reach {
+struct RayExtent {
     origin: f32,
     direction: f32,
 }
 
-impl Reach {
+impl RayExtent {
     #[inline(always)]
-    fn of(ray: &Ray) -> Reach {
+    fn of(ray: &Ray) -> RayExtent {
         let larger = |a: f32, b: f32| if a > b { a } else { b };
         let largest = |v: Vec3| larger(v.x.abs(), larger(v.y.abs(), v.z.abs()));
-        Reach { origin: largest(ray.origin), direction: largest(ray.direction) }
+        RayExtent { origin: largest(ray.origin), direction: largest(ray.direction) }
     }
 }
 
@@ -191,7 +191,7 @@ impl Reach {
 ///
 /// Möller and Trumbore 1997, with every quantity times the determinant, and compared with its rounding.
 #[inline(always)]
-fn certain(triangle: &CachedTriangle, ray: &Ray, reach: Reach) -> (bool, f32) {
+fn certain(triangle: &CachedTriangle, ray: &Ray, extent: RayExtent) -> (bool, f32) {
     let [e1, e2] = triangle.edges;
     let to_corner = triangle.corner - ray.origin;
     let r = to_corner.cross(ray.direction);
@@ -202,9 +202,9 @@ fn certain(triangle: &CachedTriangle, ray: &Ray, reach: Reach) -> (bool, f32) {
     let (u, v) = (sign * e2.dot(r), -sign * e1.dot(r));
     let t = sign * normal.dot(to_corner);
     let area = triangle.edge * triangle.edge;
-    let length = triangle.size + reach.origin;
-    let aside = MARGIN * length * reach.direction * triangle.edge;
-    let turned = MARGIN * reach.direction * area;
+    let length = triangle.size + extent.origin;
+    let aside = MARGIN * length * extent.direction * triangle.edge;
+    let turned = MARGIN * extent.direction * area;
     let along = MARGIN * length * area;
     let least = determinant - turned;
     let certain = (least > turned)

@@ -6,35 +6,37 @@ use glam::{Vec2, Vec3};
 use scene::DistantDisc;
 use std::f32::consts::{PI, TAU};
 
-/// The discs, each a tile.
+/// Distant discs, each of them a tile.
 #[derive(Clone, Debug)]
 pub(super) struct Discs {
     discs: Vec<Disc>,
-    /// Tile of the first.
+    /// Tile of the first disc.
     first: usize,
 }
 
+/// A distant disc of constant radiance.
 #[derive(Clone, Copy, Debug)]
 struct Disc {
     direction: Vec3,
-    /// 1 - cos of the angle to the rim: f32 has no cosine of the sun's.
+    /// 1 - cos of the angle to the rim. The cosine itself is not precise enough in f32 for the sun.
     versine: f32,
     radiance: Rgb,
 }
 
 impl Disc {
+    /// Returns the solid angle of the disc, sr.
     fn solid_angle(&self) -> f32 {
         TAU * self.versine
     }
 
-    /// Mean luminance over the sphere.
+    /// Returns the mean luminance over the sphere.
     fn mean_luminance(&self) -> f32 {
         luminance(self.radiance) * self.solid_angle() / (4.0 * PI)
     }
 }
 
 impl Discs {
-    /// Discs whose tiles follow `first` others.
+    /// Prepares the discs, whose tiles follow `first` others.
     pub fn new(discs: &[DistantDisc], first: usize) -> Discs {
         let disc = |disc: &DistantDisc| {
             let sin = (0.5 * f64::from(disc.half_angle)).sin();
@@ -44,27 +46,28 @@ impl Discs {
         Discs { discs: discs.iter().map(disc).collect(), first }
     }
 
+    /// Returns true if there are no discs.
     pub fn is_empty(&self) -> bool {
         self.discs.is_empty()
     }
 
-    /// Mean luminance of all over the sphere.
+    /// Returns the mean luminance of all discs over the sphere.
     pub fn mean_luminance(&self) -> f32 {
         self.discs.iter().map(Disc::mean_luminance).sum()
     }
 
-    /// Tiles of the discs, for a mean luminance `total` of discs and environment.
+    /// Lists the tiles of the discs, for a mean luminance `total` of discs and environment.
     pub fn tiles(&self, total: f32) -> impl Iterator<Item = Tile> + '_ {
         self.discs.iter().map(move |disc| Tile::apart(disc.mean_luminance() / total, disc.solid_angle()))
     }
 
-    /// Returns true if a tile is a disc's.
+    /// Returns true if a tile is a disc.
     #[inline]
     pub fn has(&self, tile: usize) -> bool {
         tile >= self.first
     }
 
-    /// Tiles and radiances of the discs that hold the unit direction `d`.
+    /// Lists tiles and radiances of the discs that contain the unit direction `d`.
     #[inline]
     pub fn around(&self, d: Vec3) -> impl Iterator<Item = (usize, Rgb)> + '_ {
         let holds = move |disc: &Disc| d.distance_squared(disc.direction) <= 2.0 * disc.versine;
@@ -72,7 +75,7 @@ impl Discs {
         within.map(|(i, disc)| (self.first + i, disc.radiance))
     }
 
-    /// Unit direction drawn uniformly in the disc of a tile, and its radiance.
+    /// Samples a unit direction uniformly in the disc of a tile. Returns the direction and its radiance.
     #[inline]
     pub fn sample(&self, tile: usize, u: Vec2) -> Option<(Vec3, Rgb)> {
         let disc = self.discs.get(tile.checked_sub(self.first)?)?;

@@ -1,18 +1,18 @@
-//! Cells of equal solid angle, into which a constant environment is cut.
+//! Cells of equal solid angle, for a constant environment.
 
 use super::tiles::Grid;
 use glam::Vec3;
 use std::f32::consts::TAU;
 use std::ops::Range;
 
-/// Cells along an edge.
+/// Number of cells along an edge.
 const CELLS: usize = 16;
 
-/// The grid of them; the first row lies around the z axis.
+/// Grid of cells of equal solid angle. The first row lies around the z axis.
 pub(super) struct EqualCells;
 
 impl EqualCells {
-    /// Unit direction at height `z` and `x` cells from the first column's left edge.
+    /// Returns the unit direction at height `z` and `x` cells from the first column's left edge.
     #[inline]
     pub fn direction(z: f32, x: f32) -> Vec3 {
         let (sin, cos) = (TAU * x / CELLS as f32).sin_cos();
@@ -20,7 +20,7 @@ impl EqualCells {
         Vec3::new(r * cos, r * sin, z)
     }
 
-    /// Column and row of a unit direction.
+    /// Returns column and row of a unit direction.
     #[inline]
     pub fn cell(d: Vec3) -> (usize, usize) {
         let cell = |x: f32| ((x * CELLS as f32) as usize).min(CELLS - 1);

@@ -1,8 +1,8 @@
-//! Cells of an environment map: the squares between four texels; the first and last row of texels lie at the poles.
+//! Cells of an environment map: the squares between four texels. The first and last rows of texels lie at the poles.
 //!
-//! Radiance is bilinear in a cell. A cell is drawn by the mean luminance of its corners times its solid angle, and a
-//! place in it by the bilinear luminance itself. So the density is proportional to radiance up to the variation of the
-//! sine of the latitude over one row, and a sun one texel wide costs no variance.
+//! Radiance is bilinear in a cell. A cell is sampled by the mean luminance of its corners times its solid angle, and a point
+//! in it by the bilinear luminance. So the density is proportional to radiance up to the variation of the sine of the
+//! latitude over one row, and a sun of one texel adds no variance.
 
 use super::tiles::Grid;
 use crate::light::DiscreteDistribution;
@@ -12,18 +12,19 @@ use scene::EnvironmentMap;
 use std::f32::consts::{FRAC_1_PI, PI, TAU};
 use std::ops::Range;
 
-/// A map and the distributions of its cells.
+/// An environment map and the distributions of its cells.
 #[derive(Clone, Debug)]
 pub(super) struct Map {
     map: EnvironmentMap,
+    /// Distribution of the rows.
     rows: DiscreteDistribution,
-    /// Columns of each row.
+    /// Distribution of the columns of each row.
     columns: Vec<DiscreteDistribution>,
 }
 
-/// A position in the map.
+/// A point in the map.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Place {
+pub(super) struct CellPoint {
     pub column: usize,
     pub row: usize,
     /// Position in the cell, in [0, 1]².
@@ -34,11 +35,12 @@ pub(super) struct Place {
 pub(super) type Corners = [Rgb; 4];
 
 impl Map {
+    /// Builds the distributions of a map.
     pub fn new(map: &EnvironmentMap) -> Map {
         let mut found = Map { map: map.clone(), rows: DiscreteDistribution::new([]), columns: Vec::new() };
         let rows = found.row_count();
         let share = |row: usize| {
-            // The exact share of the sphere between the two latitudes.
+            // Exact share of the sphere between two latitudes.
             let cos = |row: usize| (PI * row as f32 / rows as f32).cos();
             (cos(row) - cos(row + 1)).max(0.0)
         };
@@ -52,37 +54,37 @@ impl Map {
         found
     }
 
-    /// Mean luminance over the sphere of directions.
+    /// Returns the mean luminance over the sphere of directions.
     pub fn mean(&self) -> f32 {
         self.rows.total() as f32 / (2.0 * self.map.width as f32)
     }
 
-    /// Mean of the corners' luminances.
+    /// Returns the mean of the corners' luminances.
     fn mean_luminance(&self, column: usize, row: usize) -> f32 {
         0.25 * luminance(self.corners(column, row).iter().sum())
     }
 
-    /// Rows of cells: one fewer than rows of texels.
+    /// Returns the number of rows of cells, which is one less than the number of rows of texels.
     fn row_count(&self) -> usize {
         self.map.height.max(2) - 1
     }
 
-    /// Position of the unit world direction `d`.
+    /// Returns the point of the unit world direction `d`.
     #[inline]
-    pub fn locate(&self, d: Vec3) -> Place {
+    pub fn locate(&self, d: Vec3) -> CellPoint {
         let local = self.map.to_local * d;
         let u = local.x.atan2(-local.z) / TAU;
         let x = (u - u.floor()) * self.map.width as f32 - 0.5;
         let column = x.floor();
         let (row, y) = self.row_at(local.y);
-        Place {
+        CellPoint {
             column: (column as i64).rem_euclid(self.map.width as i64) as usize,
             row,
             f: Vec2::new(x - column, y),
         }
     }
 
-    /// Row at height `z` above the horizon, and the position in it.
+    /// Returns the row at height `z` above the horizon, and the position in it.
     #[inline]
     fn row_at(&self, z: f32) -> (usize, f32) {
         let rows = self.row_count();
@@ -91,52 +93,54 @@ impl Map {
         (row, (y - row as f32).clamp(0.0, 1.0))
     }
 
-    /// Position at height `z` above the horizon and `x` cells from the first column's left edge.
+    /// Returns the point at height `z` above the horizon and `x` cells from the first column's left edge.
     #[inline]
-    pub fn place_at(&self, z: f32, x: f32) -> Place {
+    pub fn place_at(&self, z: f32, x: f32) -> CellPoint {
         let column = (x as usize).min(self.map.width - 1);
         let (row, y) = self.row_at(z);
-        Place { column, row, f: Vec2::new(x - column as f32, y) }
+        CellPoint { column, row, f: Vec2::new(x - column as f32, y) }
     }
 
-    /// Unit world direction of a place.
+    /// Returns the unit world direction of a point.
     #[inline]
-    pub fn direction(&self, Place { column, row, f }: Place) -> Vec3 {
+    pub fn direction(&self, CellPoint { column, row, f }: CellPoint) -> Vec3 {
         let (sin_theta, cos_theta) = self.polar_angle(row, f).sin_cos();
-        self.towards((sin_theta, cos_theta), column as f32 + f.x)
+        self.towards(sin_theta, cos_theta, column as f32 + f.x)
     }
 
-    /// Unit world direction at height `z` above the horizon and `x` cells from the first column's left edge.
+    /// Returns the unit world direction at height `z` above the horizon and `x` cells from the first column's left edge.
     #[inline]
     pub fn direction_at(&self, z: f32, x: f32) -> Vec3 {
-        self.towards(((1.0 - z * z).max(0.0).sqrt(), z), x)
+        self.towards((1.0 - z * z).max(0.0).sqrt(), z, x)
     }
 
-    fn towards(&self, (sin_theta, cos_theta): (f32, f32), x: f32) -> Vec3 {
+    /// Returns the unit world direction of a polar angle and `x` cells from the first column's left edge.
+    fn towards(&self, sin_theta: f32, cos_theta: f32, x: f32) -> Vec3 {
         let (sin_phi, cos_phi) = (TAU * (x + 0.5) / self.map.width as f32).sin_cos();
-        // The map's frame is a rotation, so the transpose is the inverse.
+        // The matrix is a rotation, so that its transpose is its inverse.
         let local = Vec3::new(sin_phi * sin_theta, cos_theta, -cos_phi * sin_theta);
         (self.map.to_local.transpose() * local).normalize()
     }
 
-    /// Angle from the upper pole.
+    /// Returns the angle from the upper pole.
     #[inline]
     fn polar_angle(&self, row: usize, f: Vec2) -> f32 {
         PI * (row as f32 + f.y) / self.row_count() as f32
     }
 
+    /// Returns the radiance at a cell's corners.
     #[inline]
     pub fn corners(&self, column: usize, row: usize) -> Corners {
         self.texels(column, row).map(|i| self.map.radiance[i])
     }
 
-    /// [`Map::corners`] at places in the lanes of `wanted`. They are read in loops of their own, short enough for the
-    /// processor to look ahead over all lanes: a large map lies outside the caches.
+    /// Returns [`Map::corners`] at points in the lanes of `wanted`. The reads have loops of their own, which are short enough
+    /// for the processor to look ahead over all lanes, because a large map exceeds the caches.
     #[inline]
-    pub fn corners16(&self, places: &[Place; LANES], wanted: u16) -> [Corners; LANES] {
+    pub fn corners16(&self, points: &[CellPoint; LANES], wanted: u16) -> [Corners; LANES] {
         let (mut texels, mut corners) = ([[0; 4]; LANES], [Corners::default(); LANES]);
         for i in lanes_in(wanted) {
-            texels[i] = self.texels(places[i].column, places[i].row);
+            texels[i] = self.texels(points[i].column, points[i].row);
         }
         for [above, below] in [[0, 2], [1, 3]] {
             for i in lanes_in(wanted) {
@@ -147,7 +151,7 @@ impl Map {
         corners
     }
 
-    /// Indices of the texels at a cell's corners.
+    /// Returns the indices of the texels at a cell's corners.
     #[inline]
     fn texels(&self, column: usize, row: usize) -> [usize; 4] {
         let EnvironmentMap { width, height, .. } = &self.map;
@@ -156,8 +160,8 @@ impl Map {
         [top + column, top + right, bottom + column, bottom + right]
     }
 
-    /// Draws a place among a few cells.
-    pub fn sample(&self, [columns, rows]: &[Range<usize>; 2], u: Vec2) -> Place {
+    /// Samples a point among a few cells.
+    pub fn sample(&self, [columns, rows]: &[Range<usize>; 2], u: Vec2) -> CellPoint {
         let flux = |row: usize| self.flux(row, columns);
         let total: f32 = rows.clone().map(flux).sum();
         let (mut row, mut before) = (rows.start, 0.0);
@@ -171,15 +175,16 @@ impl Map {
             if here > 0.0 { ((u.y * total - before) / here).clamp(0.0, 1.0 - f32::EPSILON) } else { 0.0 };
         let (column, rest_x) = self.columns[row].sample_between(columns, u.x);
         let f = sample_bilinear(self.luminances(column, row), Vec2::new(rest_x, rest_y));
-        Place { column, row, f }
+        CellPoint { column, row, f }
     }
 
-    /// Density by solid angle with which places are drawn among all cells; there radiance is `radiance`.
+    /// Returns the density per solid angle with which points are sampled among all cells, at a point of radiance
+    /// `radiance`.
     #[inline]
-    pub fn density(&self, place: Place, corners: &Corners, radiance: Rgb) -> f32 {
-        let cell = self.rows.probability(place.row) * self.columns[place.row].probability(place.column);
+    pub fn density(&self, point: CellPoint, corners: &Corners, radiance: Rgb) -> f32 {
+        let cell = self.rows.probability(point.row) * self.columns[point.row].probability(point.column);
         let mean = 0.25 * luminance(corners.iter().sum());
-        let theta = self.polar_angle(place.row, place.f);
+        let theta = self.polar_angle(point.row, point.f);
         let cell_angle =
             (TAU / self.map.width as f32) * (PI / self.row_count() as f32) * theta.sin().max(1e-7);
         if mean > 0.0 { cell * luminance(radiance) / (mean * cell_angle) } else { 0.0 }
@@ -204,18 +209,20 @@ impl Grid for Map {
     }
 }
 
+/// Interpolates between the corners of a cell.
 #[inline]
 pub(super) fn bilinear([a, b, c, d]: &Corners, f: Vec2) -> Rgb {
     a.lerp(*b, f.x).lerp(c.lerp(*d, f.x), f.y)
 }
 
+/// Samples a point of the unit square by values at its corners, bilinear between them.
 fn sample_bilinear([a, b, c, d]: [f32; 4], u: Vec2) -> Vec2 {
     let y = sample_linear(a + b, c + d, u.y);
     let x = sample_linear(a + (c - a) * y, b + (d - b) * y, u.x);
     Vec2::new(x, y)
 }
 
-/// Inverse of the distribution whose density goes linearly from `a` to `b`.
+/// Samples [0, 1] with a density that is linear between `a` and `b`.
 fn sample_linear(a: f32, b: f32, u: f32) -> f32 {
     if a + b <= 0.0 {
         return u;

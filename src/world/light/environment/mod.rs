@@ -1,7 +1,7 @@
-//! Light from infinitely far: evaluation and sampling in proportion to radiance, about, or as [`LearnedSky`] has it.
+//! Light from infinitely far away: evaluation and sampling, about in proportion to radiance or as [`LearnedSky`] tells.
 //!
-//! Directions are drawn by tiles of about equal flux, then within the tile. A distant disc, such as the sun, is a tile
-//! of its own, over those that it hides nothing of: their radiances and densities add.
+//! A tile of about average flux is sampled first, then a direction within the tile. A distant disc, such as the sun, is a
+//! tile of its own in front of the others. It hides nothing: radiances and densities add up.
 
 mod discs;
 mod equal_cells;
@@ -14,7 +14,7 @@ mod table;
 mod tests;
 mod tiles;
 
-pub use learned::{LearnedSky, Looks};
+pub use learned::{LearnedSky, SkyObservations};
 
 use base::math::{LANES, Rgb, Vec2x16, Vec3x16, lanes_in, luminance};
 use base::sampling::uniform_sphere;
@@ -24,62 +24,63 @@ use glam::{Vec2, Vec3};
 use map::{Map, bilinear};
 use scene::{DistantDisc, Environment};
 use std::f32::consts::FRAC_1_PI;
-use table::Table;
+use table::TileTable;
 use tiles::{Block, Tiles};
 
 /// The environment with its sampling distributions.
 #[derive(Clone, Debug)]
 pub struct EnvironmentLight {
-    source: Source,
-    /// Tiles of the source, then those of the discs.
+    source: SkySource,
+    /// Tiles of the source, then tiles of the discs.
     tiles: Tiles,
     discs: Discs,
-    /// Tiles by flux.
-    by_flux: Table,
+    /// Distribution of the tiles by flux.
+    by_flux: TileTable,
     /// Mean luminance over the sphere, W/(sr m²).
     mean_luminance: f32,
 }
 
+/// Light of the environment without discs.
 #[derive(Clone, Debug)]
-enum Source {
+enum SkySource {
     Constant(Rgb),
     Map(Map),
 }
 
-/// A direction drawn from the environment.
+/// A sampled direction towards the environment.
 #[derive(Clone, Copy, Debug)]
 pub struct EnvironmentSample {
     /// Unit world direction towards the environment.
     pub direction: Vec3,
     /// Radiance arriving from that direction.
     pub radiance: Rgb,
-    /// Density by solid angle.
+    /// Density per solid angle.
     pub pdf: f32,
 }
 
-/// A tile, numbers by which a direction there is drawn, and the factor on its density.
+/// A sampled tile, random numbers for a direction in it, and the factor on the density of that direction.
 #[derive(Clone, Copy, Default)]
-struct Drawn {
+struct TileSample {
     tile: usize,
     u: Vec2,
     density: f32,
 }
 
-/// Sixteen points that directions are drawn for, and what has been learned about them.
-pub type Learned<'a> = Option<(&'a LearnedSky, &'a Vec3x16)>;
+/// Learned visibility of the environment, and the sixteen points for which directions are sampled.
+pub type LearnedAt<'a> = Option<(&'a LearnedSky, &'a Vec3x16)>;
 
 impl EnvironmentLight {
     /// Builds the distributions; `None` if environment and discs are black.
     pub fn new(environment: Option<&Environment>, discs: &[DistantDisc]) -> Option<EnvironmentLight> {
         let (source, mean_luminance, mut tiles) = match environment {
-            None => (Source::Constant(Rgb::ZERO), 0.0, Tiles::new(&EqualCells)),
+            None => (SkySource::Constant(Rgb::ZERO), 0.0, Tiles::new(&EqualCells)),
             Some(Environment::Constant(radiance)) => {
-                (Source::Constant(*radiance), luminance(*radiance), Tiles::new(&EqualCells))
+                (SkySource::Constant(*radiance), luminance(*radiance), Tiles::new(&EqualCells))
             }
             Some(Environment::Map(map)) => {
                 let map = Map::new(map);
                 let (mean, tiles) = (map.mean(), Tiles::new(&map));
-                (Source::Map(map), mean, tiles)
+                (SkySource::Map(map), mean, tiles)
             }
         };
         let discs = Discs::new(discs, tiles.all().len());
@@ -88,26 +89,31 @@ impl EnvironmentLight {
             tiles.add(discs.tiles(with_discs), mean_luminance / with_discs);
         }
         let mean_luminance = with_discs;
-        let by_flux = Table::new(tiles.all(), &vec![0.0; tiles.all().len()], 1.0);
+        let by_flux = TileTable::new(tiles.all(), &vec![0.0; tiles.all().len()], 1.0);
         let light = EnvironmentLight { source, tiles, discs, by_flux, mean_luminance };
         (mean_luminance > 0.0 && mean_luminance.is_finite()).then_some(light)
     }
 
-    /// Mean luminance over the sphere of directions.
+    /// Learns from observations how much light comes from each tile.
+    pub fn learn(&self, observations: &SkyObservations) -> LearnedSky {
+        LearnedSky::new(self.tiles.all(), observations)
+    }
+
+    /// Returns the mean luminance over the sphere of directions.
     pub fn mean_luminance(&self) -> f32 {
         self.mean_luminance
     }
 
-    /// Number of tiles.
+    /// Returns the number of tiles.
     pub fn tile_count(&self) -> usize {
         self.tiles.all().len()
     }
 
-    /// Radiance arriving from the unit world direction `d`.
+    /// Returns the radiance arriving from the unit world direction `d`.
     pub fn radiance(&self, d: Vec3) -> Rgb {
         let radiance = match &self.source {
-            Source::Constant(radiance) => *radiance,
-            Source::Map(map) => {
+            SkySource::Constant(radiance) => *radiance,
+            SkySource::Map(map) => {
                 let place = map.locate(d);
                 bilinear(&map.corners(place.column, place.row), place.f)
             }
@@ -115,15 +121,15 @@ impl EnvironmentLight {
         self.discs.around(d).fold(radiance, |sum, (_, disc)| sum + disc)
     }
 
-    /// Radiance arriving from the unit world direction `d`, and the density with which
-    /// [`EnvironmentLight::sample`] draws it.
+    /// Returns the radiance arriving from the unit world direction `d`, and the density with which
+    /// [`EnvironmentLight::sample`] samples `d`.
     pub fn radiance_pdf(&self, d: Vec3) -> (Rgb, f32) {
         self.radiance_pdf16(&Vec3x16::splat(d), 1, None)[0]
     }
 
-    /// [`EnvironmentLight::radiance_pdf`] in the lanes of `wanted`, which wait for memory together: a large
-    /// map lies outside the caches, and look-ups one after the other would take most of a render's time.
-    pub fn radiance_pdf16(&self, d: &Vec3x16, wanted: u16, learned: Learned) -> [(Rgb, f32); LANES] {
+    /// Returns [`EnvironmentLight::radiance_pdf`] in the lanes of `wanted`. The lanes wait for memory together, because a
+    /// large map exceeds the caches.
+    pub fn radiance_pdf16(&self, d: &Vec3x16, wanted: u16, learned: LearnedAt) -> [(Rgb, f32); LANES] {
         let mut found = self.source_radiance_pdf16(d, wanted, learned);
         if !self.discs.is_empty() {
             let tables = self.tables(learned);
@@ -137,10 +143,10 @@ impl EnvironmentLight {
         found
     }
 
-    /// The same without the discs.
-    fn source_radiance_pdf16(&self, d: &Vec3x16, wanted: u16, learned: Learned) -> [(Rgb, f32); LANES] {
+    /// Returns radiances and densities without the discs.
+    fn source_radiance_pdf16(&self, d: &Vec3x16, wanted: u16, learned: LearnedAt) -> [(Rgb, f32); LANES] {
         let map = match &self.source {
-            Source::Constant(radiance) => {
+            SkySource::Constant(radiance) => {
                 let even = learned.is_none() && self.discs.is_empty();
                 let tables = self.tables(learned);
                 return each(wanted, |i| {
@@ -149,7 +155,7 @@ impl EnvironmentLight {
                     (*radiance, if even { 0.25 * FRAC_1_PI } else { density() })
                 });
             }
-            Source::Map(map) => map,
+            SkySource::Map(map) => map,
         };
         let places = each(wanted, |i| map.locate(d.get(i)));
         let corners = map.corners16(&places, wanted);
@@ -169,33 +175,38 @@ impl EnvironmentLight {
         })
     }
 
-    /// Samples a direction about in proportion to luminance; `None` where the density vanishes.
+    /// Samples a direction about in proportion to luminance; `None` if the density is zero.
     pub fn sample(&self, u: Vec2) -> Option<EnvironmentSample> {
         self.sample16(&Vec2x16 { x: [u.x; LANES], y: [u.y; LANES] }, 1, None)[0]
     }
 
-    /// [`EnvironmentLight::sample`] in the lanes of `wanted`; `None` in the others. The lanes wait for memory together.
-    pub fn sample16(&self, u: &Vec2x16, wanted: u16, learned: Learned) -> [Option<EnvironmentSample>; LANES] {
-        if let (Source::Constant(radiance), None, true) = (&self.source, learned, self.discs.is_empty()) {
+    /// Samples a direction in each lane of `wanted`; `None` in other lanes. The lanes wait for memory together.
+    pub fn sample16(
+        &self,
+        u: &Vec2x16,
+        wanted: u16,
+        learned: LearnedAt,
+    ) -> [Option<EnvironmentSample>; LANES] {
+        if let (SkySource::Constant(radiance), None, true) = (&self.source, learned, self.discs.is_empty()) {
             let (radiance, pdf) = (*radiance, 0.25 * FRAC_1_PI);
             return each(wanted, |i| {
                 Some(EnvironmentSample { direction: uniform_sphere(u.get(i)), radiance, pdf })
             });
         }
         let tables = self.tables(learned);
-        let drawn = each(wanted, |i| {
+        let chosen = each(wanted, |i| {
             let (tile, rest) = tables[i].sample(u.x[i]);
-            Drawn { tile, u: Vec2::new(rest, u.y[i]), density: tables[i].density(tile) }
+            TileSample { tile, u: Vec2::new(rest, u.y[i]), density: tables[i].density(tile) }
         });
-        let mut samples = self.sample_tiles(&drawn, wanted);
+        let mut samples = self.sample_tiles(&chosen, wanted);
         if !self.discs.is_empty() {
             self.add_up(&mut samples, learned);
         }
         samples
     }
 
-    /// Gives samples that are on a disc the radiance and density of all that is drawn there.
-    fn add_up(&self, samples: &mut [Option<EnvironmentSample>; LANES], learned: Learned) {
+    /// Adds up the radiances and densities of all sources in directions that lie on a disc.
+    fn add_up(&self, samples: &mut [Option<EnvironmentSample>; LANES], learned: LearnedAt) {
         let (mut directions, mut on_discs) = (Vec3x16::default(), 0);
         for (i, sample) in samples.iter().enumerate() {
             if let Some(sample) = sample
@@ -215,55 +226,58 @@ impl EnvironmentLight {
         }
     }
 
-    /// Samples a direction in each of sixteen tiles; densities are relative.
+    /// Samples a direction in each of sixteen tiles. Densities are relative.
     pub fn sample_of_tiles(&self, tiles: &[usize; LANES], u: &Vec2x16) -> [Option<EnvironmentSample>; LANES] {
-        let drawn = each(u16::MAX, |i| Drawn { tile: tiles[i], u: u.get(i), density: 1.0 });
-        self.sample_tiles(&drawn, u16::MAX)
+        let chosen = each(u16::MAX, |i| TileSample { tile: tiles[i], u: u.get(i), density: 1.0 });
+        self.sample_tiles(&chosen, u16::MAX)
     }
 
-    /// Share of all flux that a tile has.
+    /// Returns the share of all flux that a tile has.
     pub fn flux_of_tile(&self, tile: usize) -> f32 {
         self.tiles.all()[tile].flux
     }
 
-    /// Samples a direction of a tile, by itself: a disc adds nothing to tiles that it is before. The density is that
-    /// within the tile.
+    /// Samples a direction of a tile alone: discs add nothing to the tiles behind them. The density is that within the tile.
     pub fn sample_of_tile(&self, tile: usize, u: Vec2) -> Option<EnvironmentSample> {
-        let mut drawn = [Drawn::default(); LANES];
-        drawn[0] = Drawn { tile, u, density: self.tiles.all()[tile].density };
-        self.sample_tiles(&drawn, 1)[0]
+        let mut chosen = [TileSample::default(); LANES];
+        chosen[0] = TileSample { tile, u, density: self.tiles.all()[tile].density };
+        self.sample_tiles(&chosen, 1)[0]
     }
 
     /// Samples directions in tiles, in the lanes of `wanted`.
-    fn sample_tiles(&self, drawn: &[Drawn; LANES], wanted: u16) -> [Option<EnvironmentSample>; LANES] {
+    fn sample_tiles(&self, chosen: &[TileSample; LANES], wanted: u16) -> [Option<EnvironmentSample>; LANES] {
         let on_discs =
-            lanes_in(wanted).filter(|i| self.discs.has(drawn[*i].tile)).fold(0, |on, i| on | 1 << i);
-        let mut samples = self.sample_source_tiles(drawn, wanted & !on_discs);
+            lanes_in(wanted).filter(|i| self.discs.has(chosen[*i].tile)).fold(0, |on, i| on | 1 << i);
+        let mut samples = self.sample_source_tiles(chosen, wanted & !on_discs);
         for i in lanes_in(on_discs) {
-            let Drawn { tile, u, density } = drawn[i];
-            let drawn = self.discs.sample(tile, u);
+            let TileSample { tile, u, density } = chosen[i];
+            let sample = self.discs.sample(tile, u);
             samples[i] =
-                drawn.map(|(direction, radiance)| EnvironmentSample { direction, radiance, pdf: density });
+                sample.map(|(direction, radiance)| EnvironmentSample { direction, radiance, pdf: density });
         }
         samples
     }
 
-    /// The same in tiles of the source.
-    fn sample_source_tiles(&self, drawn: &[Drawn; LANES], wanted: u16) -> [Option<EnvironmentSample>; LANES] {
-        let tile = |i: usize| &self.tiles.all()[drawn[i].tile];
+    /// Samples directions in tiles of the source, in the lanes of `wanted`.
+    fn sample_source_tiles(
+        &self,
+        chosen: &[TileSample; LANES],
+        wanted: u16,
+    ) -> [Option<EnvironmentSample>; LANES] {
+        let tile = |i: usize| &self.tiles.all()[chosen[i].tile];
         let map = match &self.source {
-            Source::Constant(radiance) => {
+            SkySource::Constant(radiance) => {
                 return each(wanted, |i| {
-                    let (z, x) = tile(i).place(drawn[i].u);
+                    let (z, x) = tile(i).place(chosen[i].u);
                     let direction = EqualCells::direction(z, x);
-                    Some(EnvironmentSample { direction, radiance: *radiance, pdf: drawn[i].density })
+                    Some(EnvironmentSample { direction, radiance: *radiance, pdf: chosen[i].density })
                 });
             }
-            Source::Map(map) => map,
+            SkySource::Map(map) => map,
         };
         let even = |i: usize| tile(i).rows.is_none();
         let blocks = each(wanted, |i| match &tile(i).rows {
-            Some(rows) => self.tiles.sample(tile(i), rows, drawn[i].u),
+            Some(rows) => self.tiles.sample(tile(i), rows, chosen[i].u),
             None => Block::default(),
         });
         let mut directions = [Vec3::ZERO; LANES];
@@ -273,7 +287,7 @@ impl EnvironmentLight {
                 directions[i] = map.direction(place);
                 return place;
             }
-            let (z, x) = if even(i) { tile(i).place(drawn[i].u) } else { self.tiles.place(&blocks[i]) };
+            let (z, x) = if even(i) { tile(i).place(chosen[i].u) } else { self.tiles.place(&blocks[i]) };
             directions[i] = map.direction_at(z, x);
             map.place_at(z, x)
         });
@@ -286,14 +300,14 @@ impl EnvironmentLight {
                 0.0 => map.density(place, &corners[i], radiance),
                 density => density,
             };
-            let pdf = drawn[i].density * within;
+            let pdf = chosen[i].density * within;
             (pdf > 0.0 && pdf.is_finite()).then_some(EnvironmentSample { direction, radiance, pdf })
         })
     }
 
-    /// Distributions over tiles, by lane.
+    /// Returns the distribution over tiles for each lane.
     #[inline]
-    fn tables<'a>(&'a self, learned: Learned<'a>) -> [&'a Table; LANES] {
+    fn tables<'a>(&'a self, learned: LearnedAt<'a>) -> [&'a TileTable; LANES] {
         learned.map_or([&self.by_flux; LANES], |(sky, x)| sky.at(x))
     }
 }

@@ -107,21 +107,21 @@ fn what_is_learned_of_a_window_is_where_most_samples_go_and_all_directions_keep_
     let light = EnvironmentLight::new(Some(&Environment::Map(two_parts())), &[]).unwrap();
     let open = |d: Vec3| d.x > 0.5;
     // Two places: light from one side at the one, none at the other.
-    let mut looks = Looks::default();
+    let mut observations = SkyObservations::default();
     for i in 0..128u32 {
-        looks.points.push(Vec3::new(if i < 64 { 0.0 } else { 10.0 }, i as f32 * 1e-3, 0.0));
+        observations.points.push(Vec3::new(if i < 64 { 0.0 } else { 10.0 }, i as f32 * 1e-3, 0.0));
         for packet in 0..2 {
             let tiles =
                 std::array::from_fn(|lane| (i as usize * 2 + packet + 16 * lane) % light.tile_count());
             let mut u = Vec2x16::default();
             (0..LANES).for_each(|lane| u.set(lane, owen_sobol_2d(i * 32 + lane as u32, 9)));
             let samples = light.sample_of_tiles(&tiles, &u);
-            looks.rays.extend(tiles.iter().zip(samples).map(|(tile, s)| {
+            observations.rays.extend(tiles.iter().zip(samples).map(|(tile, s)| {
                 (*tile as u16, if i < 64 && s.is_some_and(|s| open(s.direction)) { 1.0 } else { 0.0 })
             }));
         }
     }
-    let learned = LearnedSky::new(&light, &looks);
+    let learned = light.learn(&observations);
     let share = |x: f32| {
         let at = Vec3x16::splat(Vec3::new(x, 0.06, 0.0));
         let (n, mut found, mut inverse) = (1 << 14, 0, 0.0f64);

@@ -1,8 +1,8 @@
 //! Tiles of the sphere of directions, of about equal flux.
 //!
-//! Where radiance is about even over a tile, directions are drawn there uniformly; elsewhere by blocks of cells, and
-//! uniformly in those where radiance is about even. The tables of cells lie outside the caches, and reading them takes
-//! more time than the shadow ray.
+//! Directions are sampled uniformly in tiles of about constant radiance. In other tiles a block of cells is sampled first,
+//! then a direction in it, uniformly if its radiance is about constant. The tables of cells exceed the caches, and reading
+//! them takes longer than the shadow ray.
 
 use crate::light::DiscreteDistribution;
 use glam::Vec2;
@@ -13,22 +13,22 @@ use std::ops::Range;
 /// Maximum number of tiles.
 const MAX_TILES: usize = 256;
 
-/// Maximum number of blocks of cells along an edge; tiles consist of whole blocks.
+/// Maximum number of blocks of cells along an edge. Tiles consist of whole blocks.
 const MAX_BLOCKS: usize = 256;
 
-/// Maximum squared coefficient of variation of the radiance of an even tile or block: the variance that it adds to an
-/// estimate.
+/// Maximum squared coefficient of variation of the radiance in an even tile or block, which is the relative variance that
+/// it adds to an estimate.
 const EVEN: f64 = 0.03;
 
-/// Grid of cells over the sphere of directions, columns of equal azimuth and rows between two heights.
+/// Grid of cells over the sphere of directions. Columns have equal azimuths, and rows lie between two heights.
 pub(super) trait Grid: Sync {
-    /// Numbers of columns and rows.
+    /// Returns the numbers of columns and rows.
     fn size(&self) -> [usize; 2];
-    /// Height above the horizon, in [-1, 1], at which a row begins; rows go down.
+    /// Returns the height above the horizon, in [-1, 1], at which a row begins. Heights decrease with the row.
     fn height(&self, row: usize) -> f32;
-    /// Share of all flux in some columns of a row.
+    /// Returns the share of all flux in some columns of a row.
     fn flux(&self, row: usize, columns: &Range<usize>) -> f32;
-    /// Luminances at a cell's corners, between which they vary evenly.
+    /// Returns the luminances at a cell's corners, between which luminance is bilinear.
     fn luminances(&self, column: usize, row: usize) -> [f32; 4];
 }
 
@@ -39,14 +39,14 @@ pub(super) struct Tile {
     pub cells: [Range<usize>; 2],
     /// Columns and rows of blocks.
     blocks: [Range<usize>; 2],
-    /// Rows of blocks, of which one is drawn; `None` if radiance is even.
+    /// Distribution of the rows of blocks; `None` if radiance is even.
     pub rows: Option<DiscreteDistribution>,
     /// Heights between which the tile lies.
     pub heights: [f32; 2],
     /// Share of all flux.
     pub flux: f32,
-    /// Density by solid angle of the directions in the tile if it is even; else the factor that makes those drawn
-    /// among all cells into those drawn in the tile.
+    /// Density per solid angle of directions in the tile, if it is even; else the factor that turns densities among all cells
+    /// into densities in the tile.
     pub density: f32,
 }
 
@@ -56,34 +56,36 @@ pub(super) struct Tiles {
     tiles: Vec<Tile>,
     /// Columns and rows of cells.
     size: [usize; 2],
-    /// Cells along the edges of a block, and blocks in a row.
+    /// Numbers of cells along the edges of a block.
     block: [usize; 2],
+    /// Number of blocks in a row.
     blocks: usize,
+    /// Tile of each block.
     of_block: Vec<u16>,
-    /// Blocks of each row.
+    /// Distribution of the blocks of each row.
     columns: Vec<DiscreteDistribution>,
-    /// Densities by solid angle, among all cells, of the directions in even blocks; 0 of others.
+    /// Densities per solid angle among all cells of directions in even blocks; 0 for other blocks.
     even: Vec<f32>,
-    /// Heights at which rows of blocks begin and the last one ends.
+    /// Heights at which rows of blocks begin, and at which the last row ends.
     heights: Vec<f32>,
 }
 
-/// A block that was drawn, and numbers by which a place in it is.
+/// A sampled block, and random numbers for a point in it.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Block {
     column: usize,
     row: usize,
-    /// Numbers in [0, 1)².
+    /// Random numbers in [0, 1)².
     pub u: Vec2,
-    /// Density by solid angle among all cells if the block is even, else 0.
+    /// Density per solid angle among all cells, if the block is even; else 0.
     pub density: f32,
 }
 
 /// Rectangle of blocks, and its flux.
-type Part = ([Range<usize>; 2], f64);
+type BlockPart = ([Range<usize>; 2], f64);
 
 impl Tiles {
-    /// Cuts a grid, the brightest part first.
+    /// Cuts a grid into tiles.
     pub fn new(grid: &impl Grid) -> Tiles {
         let size = grid.size();
         let block = size.map(|n| n.div_ceil(MAX_BLOCKS).max(1));
@@ -123,7 +125,7 @@ impl Tiles {
                 of_block[y * blocks[0]..][rect[0].clone()].fill(tile as u16);
             }
         }
-        let tile = |(part, part_flux): &Part| {
+        let tile = |(part, part_flux): &BlockPart| {
             let lines =
                 || part[1].clone().map(|row| row * blocks[0] + part[0].start..row * blocks[0] + part[0].end);
             let even = lines().flat_map(|line| &sums[line]).fold(Sums::default(), Sums::and).is_even();
@@ -140,7 +142,7 @@ impl Tiles {
         Tiles { tiles, size, block, blocks: blocks[0], of_block, columns, even, heights }
     }
 
-    /// Draws a block of a tile that is not even, of whose rows `rows` draws one.
+    /// Samples a block of a tile that is not even; `rows` is the distribution of its rows.
     #[inline]
     pub fn sample(&self, tile: &Tile, rows: &DiscreteDistribution, u: Vec2) -> Block {
         let (row, v) = rows.sample(u.y);
@@ -149,7 +151,7 @@ impl Tiles {
         Block { column, row, u: Vec2::new(u, v), density: self.even[row * self.blocks + column] }
     }
 
-    /// Columns and rows of a block's cells.
+    /// Returns columns and rows of a block's cells.
     #[inline]
     pub fn cells(&self, block: &Block) -> [Range<usize>; 2] {
         let cells = |at: usize, axis: usize| {
@@ -158,7 +160,8 @@ impl Tiles {
         [cells(block.column, 0), cells(block.row, 1)]
     }
 
-    /// Height, and cells from the first column's left edge, of a place drawn uniformly by solid angle in a block.
+    /// Samples a point uniformly by solid angle in a block. Returns its height, and the number of cells from the first
+    /// column's left edge.
     #[inline]
     pub fn place(&self, block: &Block) -> (f32, f32) {
         let [columns, _] = self.cells(block);
@@ -166,47 +169,48 @@ impl Tiles {
         (top + (bottom - top) * block.u.y, columns.start as f32 + block.u.x * columns.len() as f32)
     }
 
-    /// Density among all cells of directions in an even block around a cell, 0 in other blocks.
+    /// Returns the density among all cells of directions in the block around a cell, if the block is even; else 0.
     #[inline]
     pub fn density(&self, column: usize, row: usize) -> f32 {
         self.even[self.block_of(column, row)]
     }
 
+    /// Returns the block around a cell.
     #[inline]
     fn block_of(&self, column: usize, row: usize) -> usize {
         row / self.block[1] * self.blocks + column / self.block[0]
     }
 
-    /// Adds tiles that are no part of the grid, which keeps `share` of the flux.
+    /// Adds tiles outside the grid, which has the share `share` of the flux afterwards.
     pub fn add(&mut self, tiles: impl Iterator<Item = Tile>, share: f32) {
         self.tiles.iter_mut().for_each(|tile| tile.flux *= share);
         self.tiles.extend(tiles);
     }
 
-    /// The tiles.
+    /// Returns all tiles.
     #[inline]
     pub fn all(&self) -> &[Tile] {
         &self.tiles
     }
 
-    /// Tile of a cell.
+    /// Returns the tile of a cell.
     #[inline]
     pub fn of_cell(&self, column: usize, row: usize) -> usize {
         self.of_block[self.block_of(column, row)].into()
     }
 }
 
-/// A density, or 0 where there is nothing to draw.
+/// Returns a density; 0 if it is not finite, because there is nothing to sample.
 fn finite(density: f32) -> f32 {
     if density.is_finite() { density } else { 0.0 }
 }
 
-/// Sums over cells, by solid angle up to a factor: of 1, of luminance and of its square.
+/// Integrals over cells, up to a factor: solid angle, luminance and squared luminance.
 #[derive(Clone, Copy, Debug, Default)]
 struct Sums([f64; 3]);
 
 impl Sums {
-    /// Over cells between two heights each.
+    /// Sums over cells; `heights` are the borders of the rows.
     fn of(grid: &impl Grid, heights: &[f32], [columns, rows]: &[Range<usize>; 2]) -> Sums {
         let mut sums = [0.0; 3];
         for row in rows.clone() {
@@ -221,11 +225,12 @@ impl Sums {
         Sums(sums)
     }
 
+    /// Adds other sums.
     fn and(self, other: &Sums) -> Sums {
         Sums(std::array::from_fn(|i| self.0[i] + other.0[i]))
     }
 
-    /// Returns true if radiance is about even.
+    /// Returns true if radiance is about constant.
     fn is_even(&self) -> bool {
         let [angle, sum, squares] = self.0;
         squares * angle <= (1.0 + EVEN) * sum * sum
@@ -233,7 +238,7 @@ impl Sums {
 }
 
 impl Tile {
-    /// A tile that is no part of a grid, of even radiance.
+    /// Makes a tile of constant radiance outside a grid.
     pub fn apart(flux: f32, solid_angle: f32) -> Tile {
         let none = [0..0, 0..0];
         Tile {
@@ -246,7 +251,8 @@ impl Tile {
         }
     }
 
-    /// Height, and cells from the first column's left edge, of a place drawn uniformly by solid angle.
+    /// Samples a point uniformly by solid angle. Returns its height, and the number of cells from the first column's left
+    /// edge.
     #[inline]
     pub fn place(&self, u: Vec2) -> (f32, f32) {
         let z = self.heights[0] + (self.heights[1] - self.heights[0]) * u.y;
@@ -254,15 +260,16 @@ impl Tile {
     }
 }
 
-/// Cuts a grid of blocks into parts, the brightest along its longer edge into halves of about equal flux, and so on.
-fn cut(flux: &[f64], blocks: [usize; 2]) -> Vec<Part> {
+/// Cuts a grid of blocks into parts: the brightest part is halved along its longer edge into parts of about equal flux,
+/// again and again.
+fn cut(flux: &[f64], blocks: [usize; 2]) -> Vec<BlockPart> {
     let mut parts = vec![([0..blocks[0], 0..blocks[1]], flux.iter().sum())];
     while parts.len() < MAX_TILES {
         let divisible = |i: &usize| parts[*i].0.iter().any(|range| range.len() > 1) && parts[*i].1 > 0.0;
         let brightest = (0..parts.len()).filter(divisible);
         let Some(i) = brightest.reduce(|a, b| if parts[b].1 > parts[a].1 { b } else { a }) else { break };
         let (rect, total) = parts[i].clone();
-        // A row of blocks goes round the horizon, a column from pole to pole.
+        // A row of blocks spans 360 degrees, a column 180 degrees.
         let widths = [2 * rect[0].len() * blocks[1], rect[1].len() * blocks[0]];
         let axis = usize::from(rect[0].len() == 1 || (rect[1].len() > 1 && widths[1] > widths[0]));
         let line = |at: usize| -> f64 {

@@ -1,4 +1,4 @@
-//! Extent, directions and power of emitters, and of sets of them.
+//! Extent, directions and power of emitters and of sets of emitters.
 
 use super::cone::{EmissionCone, angle_between};
 use crate::light::{AreaLight, delta_power};
@@ -7,7 +7,7 @@ use glam::Vec3;
 use scene::DeltaLight;
 use std::f32::consts::{FRAC_PI_2, PI};
 
-/// Distance of the points that stand for directional lights, over the scene's diagonal.
+/// Distance of the points that represent directional lights, over the scene's diagonal.
 const FAR: f32 = 1e3;
 
 /// Bounds of a set of emitters.
@@ -26,10 +26,10 @@ pub struct EmitterBounds {
 }
 
 impl EmitterBounds {
-    /// Bounds of an emitting mesh.
+    /// Bounds an emitting mesh.
     pub fn of_area(light: &AreaLight) -> EmitterBounds {
         let (mut low, mut high) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
-        // The sum of the triangles' normals by their areas.
+        // Sum of the triangles' normals times their areas.
         let mut facing = Vec3::ZERO;
         for [corner, e1, e2, _] in light.shapes() {
             for position in [*corner, corner + e1, corner + e2] {
@@ -41,7 +41,7 @@ impl EmitterBounds {
         let spread = light.shapes().iter().map(|shape| angle_between(axis, shape[3])).fold(0.0, f32::max);
         let directed = !light.emission.two_sided && axis != Vec3::ZERO;
         let cone = EmissionCone { axis, normals: spread, emission: FRAC_PI_2 };
-        // Where a surface shines into all directions alike, each has a fourth of what a flat one has in front.
+        // A surface that emits evenly into all directions has a quarter of a flat emitter's peak intensity.
         let share = if directed { (facing.length() / light.area).max(0.25) } else { 0.25 };
         EmitterBounds {
             low,
@@ -52,7 +52,7 @@ impl EmitterBounds {
         }
     }
 
-    /// Bounds of a point, spot or directional light, in a scene whose bounds have the given diagonal.
+    /// Bounds a point, spot or directional light, in a scene of the given diagonal.
     pub fn of_delta(light: &DeltaLight, diagonal: f32) -> EmitterBounds {
         let power = delta_power(light, 0.5 * diagonal);
         let at = |position, cone, intensity| EmitterBounds {
@@ -68,7 +68,7 @@ impl EmitterBounds {
                 let cone = EmissionCone { axis: direction, normals: 0.0, emission: outer_angle };
                 at(position, cone, intensity)
             }
-            // A point so far away that its distance and direction hardly change within the scene.
+            // A point at a distance at which direction and distance hardly vary within the scene.
             DeltaLight::Directional { direction, irradiance } => {
                 let distance = FAR * diagonal;
                 let bounds = at(-direction * distance, EmissionCone::ALL, irradiance * (distance * distance));
@@ -78,7 +78,7 @@ impl EmitterBounds {
         }
     }
 
-    /// Bounds of both sets.
+    /// Bounds both sets.
     pub fn union(&self, other: &EmitterBounds) -> EmitterBounds {
         EmitterBounds {
             low: self.low.min(other.low),
@@ -89,8 +89,8 @@ impl EmitterBounds {
         }
     }
 
-    /// Cost of choosing the set as one: its power, by the extent of its positions and directions (Conty Estevez &
-    /// Kulla 2018, section 4.4, with the square of the diagonal in place of the surface).
+    /// Returns the cost of sampling the set as one: power times the extents of positions and directions (Conty Estevez &
+    /// Kulla 2018, section 4.4, with the squared diagonal instead of the surface area).
     pub fn cost(&self) -> f32 {
         self.power * self.cone.measure() * self.low.distance_squared(self.high)
     }

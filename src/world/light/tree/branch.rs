@@ -1,6 +1,6 @@
-//! Branches of the emitter tree: up to eight siblings, chosen between at once.
+//! Branches of the emitter tree: up to eight siblings that are weighted at once.
 
-use super::node::{ARITY, BY_POWER, Child, Node};
+use super::node::{ARITY, BY_POWER, EmitterNode, PointAndNormal, TreeChild};
 use base::math::F32x8;
 use glam::Vec3;
 
@@ -15,14 +15,14 @@ pub struct Branch {
     sin_normals: [f32; ARITY],
     cos_emission: [f32; ARITY],
     peak: [f32; ARITY],
-    /// Shares of the power.
+    /// Shares of the branch's power.
     share: [f32; ARITY],
-    children: [Child; ARITY],
+    children: [TreeChild; ARITY],
 }
 
 impl Branch {
-    /// Branch of at most [`ARITY`] nodes, each with its share of the power.
-    pub fn new(nodes: &[(Node, f32, Child)]) -> Branch {
+    /// Builds a branch of at most [`ARITY`] nodes, each with its share of the power.
+    pub fn new(nodes: &[(EmitterNode, f32, TreeChild)]) -> Branch {
         let mut branch = Branch {
             centre: [[0.0; ARITY]; 3],
             radius: [1.0; ARITY],
@@ -32,7 +32,7 @@ impl Branch {
             cos_emission: [0.0; ARITY],
             peak: [0.0; ARITY],
             share: [0.0; ARITY],
-            children: [Child::emitter(0); ARITY],
+            children: [TreeChild::emitter(0); ARITY],
         };
         for (i, (node, share, child)) in nodes.iter().enumerate() {
             for k in 0..3 {
@@ -48,13 +48,13 @@ impl Branch {
         branch
     }
 
-    /// Weights of the children at a point with its normal, zero for those that do not shine there; `factors` on their
-    /// importance are those that have been learned.
+    /// Returns the weights of the children at a point; zero for children that cannot light it. `factors` are learned factors
+    /// on their importance.
     #[inline(always)]
-    fn weights(&self, (x, n): (Vec3, Vec3), factors: Option<&[f32]>) -> [f32; ARITY] {
+    fn weights(&self, at: PointAndNormal, factors: Option<&[f32]>) -> [f32; ARITY] {
         let mut weights = [0.0; ARITY];
         for i in 0..ARITY {
-            let node = Node {
+            let node = EmitterNode {
                 centre: Vec3::new(self.centre[0][i], self.centre[1][i], self.centre[2][i]),
                 radius: self.radius[i],
                 axis: Vec3::new(self.axis[0][i], self.axis[1][i], self.axis[2][i]),
@@ -63,7 +63,7 @@ impl Branch {
                 cos_emission: self.cos_emission[i],
                 peak: self.peak[i],
             };
-            weights[i] = node.importance(x, n);
+            weights[i] = node.importance(at);
         }
         for (weight, factor) in weights.iter_mut().zip(factors.into_iter().flatten()) {
             *weight *= factor;
@@ -77,10 +77,14 @@ impl Branch {
         weights
     }
 
-    /// Chooses a child; returns it, its probability and the number stretched within it. `None` where no child
-    /// shines.
+    /// Chooses a child. Returns the child, its probability, and `u` rescaled within it; `None` if no child lights the point.
     #[inline]
-    pub fn sample(&self, at: (Vec3, Vec3), factors: Option<&[f32]>, u: f32) -> Option<(Child, f32, f32)> {
+    pub fn sample(
+        &self,
+        at: PointAndNormal,
+        factors: Option<&[f32]>,
+        u: f32,
+    ) -> Option<(TreeChild, f32, f32)> {
         let weights = self.weights(at, factors);
         let (mut ends, mut total) = ([0.0; ARITY], 0.0);
         for i in 0..ARITY {
@@ -90,7 +94,7 @@ impl Branch {
         if total == 0.0 {
             return None;
         }
-        // Less than the last end, whatever the rounding: so a child of positive weight is found.
+        // The value stays below the last end despite rounding, so that a child of positive weight is chosen.
         let place = (u * total).min(total * (1.0 - f32::EPSILON));
         let mut slot = 0;
         for end in ends {
@@ -101,9 +105,9 @@ impl Branch {
         Some((self.children[slot], weights[slot] / total, rest))
     }
 
-    /// Probability of [`Branch::sample`] choosing child `slot`.
+    /// Returns the probability with which [`Branch::sample`] chooses child `slot`.
     #[inline]
-    pub fn probability(&self, at: (Vec3, Vec3), factors: Option<&[f32]>, slot: usize) -> f32 {
+    pub fn probability(&self, at: PointAndNormal, factors: Option<&[f32]>, slot: usize) -> f32 {
         let weights = self.weights(at, factors);
         let total = F32x8(weights).sum();
         if total > 0.0 { weights[slot] / total } else { 0.0 }

@@ -1,8 +1,8 @@
-//! Building of the binary tree: top-down, binned splits in position.
+//! Building of the binary tree, top-down by binned splits in position.
 //!
 //! Paper: Conty Estevez & Kulla, *Importance Sampling of Many Lights with Adaptive Tree Splitting*, 2018, section 4.4.
 //!
-//! Deviations: no penalty for thin boxes, and no splits in orientation, which the cost prefers where it can.
+//! Deviations: no penalty for thin boxes, and no splits in orientation.
 
 use super::bounds::EmitterBounds;
 
@@ -26,7 +26,7 @@ pub enum Content {
     Emitter(usize),
 }
 
-/// Builds a tree over emitters; its root comes last.
+/// Builds a tree over emitters. The root comes last.
 pub fn build(emitters: &[EmitterBounds]) -> Vec<BinaryNode> {
     let mut nodes = Vec::with_capacity(2 * emitters.len());
     let mut order: Vec<usize> = (0..emitters.len()).collect();
@@ -36,7 +36,7 @@ pub fn build(emitters: &[EmitterBounds]) -> Vec<BinaryNode> {
     nodes
 }
 
-/// Adds the nodes over the emitters in `order`, the highest one last.
+/// Adds the nodes over the emitters in `order`. The topmost node comes last.
 fn build_below(emitters: &[EmitterBounds], order: &mut [usize], nodes: &mut Vec<BinaryNode>) {
     if let [emitter] = *order {
         nodes.push(BinaryNode { bounds: emitters[emitter], content: Content::Emitter(emitter) });
@@ -52,7 +52,8 @@ fn build_below(emitters: &[EmitterBounds], order: &mut [usize], nodes: &mut Vec<
     nodes.push(BinaryNode { bounds, content: Content::Children(children) });
 }
 
-/// Parts the emitters in `order` at the cheapest of all borders of bins; returns the number of those before it.
+/// Sorts the emitters in `order` into two sets at the bin border of least cost. Returns the number of emitters in the
+/// first set.
 fn split(emitters: &[EmitterBounds], order: &mut [usize]) -> usize {
     let centre = |emitter: usize| 0.5 * (emitters[emitter].low + emitters[emitter].high);
     let low = order.iter().map(|e| centre(*e)).reduce(|a, b| a.min(b)).unwrap_or_default();
@@ -82,12 +83,13 @@ fn split(emitters: &[EmitterBounds], order: &mut [usize]) -> usize {
             }
         }
     }
-    // Emitters in one place are halved.
+    // Emitters at one position are halved.
     let Some((_, axis, last)) = best else { return order.len() / 2 };
     order.sort_by_key(|emitter| bin(*emitter, axis) > last);
     order.partition_point(|emitter| bin(*emitter, axis) <= last)
 }
 
+/// Extends bounds by other bounds, if there are any.
 fn grow(bounds: &mut Option<EmitterBounds>, by: Option<EmitterBounds>) {
     *bounds = match (*bounds, by) {
         (Some(a), Some(b)) => Some(a.union(&b)),

@@ -1,21 +1,21 @@
-//! Cones around the directions into which emitters shine.
+//! Cones around the directions into which emitters emit.
 
 use glam::Vec3;
 use std::f32::consts::{FRAC_PI_2, PI};
 
-/// Directions into which the members of a set shine: within `emission` of their normals, which lie within `normals`
-/// of the axis.
+/// Directions into which a set of emitters emits: within the angle `emission` of normals that lie within `normals` of the
+/// axis.
 #[derive(Clone, Copy, Debug)]
 pub struct EmissionCone {
     /// Unit axis of the normals.
     pub axis: Vec3,
     /// Maximum angle between the axis and a normal, radians; π for all directions.
     pub normals: f32,
-    /// Maximum angle between a normal and the light it stands for, radians.
+    /// Maximum angle between a normal and emitted light, radians.
     pub emission: f32,
 }
 
-/// Angle between unit vectors, radians; precise at small angles, where the arc cosine is not.
+/// Returns the angle between unit vectors in radians. It is precise at small angles, unlike the arc cosine.
 pub fn angle_between(a: Vec3, b: Vec3) -> f32 {
     a.cross(b).length().atan2(a.dot(b))
 }
@@ -24,7 +24,7 @@ impl EmissionCone {
     /// All directions.
     pub const ALL: EmissionCone = EmissionCone { axis: Vec3::Z, normals: PI, emission: FRAC_PI_2 };
 
-    /// A cone around both (Conty Estevez & Kulla 2018, algorithm 1).
+    /// Returns a cone around both cones (Conty Estevez & Kulla 2018, algorithm 1).
     pub fn union(&self, other: &EmissionCone) -> EmissionCone {
         let (a, b) = if self.normals >= other.normals { (self, other) } else { (other, self) };
         let emission = a.emission.max(b.emission);
@@ -41,7 +41,7 @@ impl EmissionCone {
         EmissionCone { axis: (a.axis * cos + sideways * sin).normalize(), normals, emission }
     }
 
-    /// Measure of the directions, weighted by cosine outside the cone of normals (ibid., section 4.1).
+    /// Returns the measure of the directions, weighted by the cosine outside the cone of normals (ibid., section 4.1).
     pub fn measure(&self) -> f32 {
         let o = self.normals;
         let w = (o + self.emission).min(PI);

@@ -1,12 +1,12 @@
-//! A tree over many emitters: the choice of one goes down it, by the importance of the nodes at the point.
+//! A tree over many emitters. The choice of an emitter descends it by the importance of its nodes at the point.
 //!
 //! Papers: Conty Estevez & Kulla, *Importance Sampling of Many Lights with Adaptive Tree Splitting*, 2018; Yuksel,
 //! *Stochastic Lightcuts*, 2019.
 //!
-//! Deviations: the choice starts not at the root but among the nodes of a cut (all emitters, if they are few), which
-//! are weighted at sixteen points at once, and goes on by branches of up to eight children. Part of it is by power,
-//! against estimates that are far off. Directional lights are points far away. The angle in which a node is seen
-//! enters by its sine alone, which bounds the cosines and saves roots.
+//! Deviations: the choice starts among the nodes of a cut (all emitters, if there are few), which are weighted at sixteen
+//! points at once, and continues through branches of up to eight children. Part of the choice is by power, as a safeguard
+//! against poor estimates. Directional lights are represented by distant points. The angle that a node subtends enters by
+//! its sine alone, which bounds the cosines and saves roots.
 
 mod bounds;
 mod branch;
@@ -15,43 +15,42 @@ mod cone;
 mod learned;
 mod node;
 
-use super::{AreaLight, Receivers16};
-use base::math::{F32x16, LANES};
+use super::area::AreaLight;
+use base::math::{F32x16, LANES, Vec3x16};
 pub use bounds::EmitterBounds;
 use branch::Branch;
 use build::{BinaryNode, Content, build};
-use glam::Vec3;
-pub use learned::{LampLooks, LearnedLamps};
-use node::{ARITY, Child, Node};
+pub use learned::{EmitterObservations, LearnedEmitters};
+pub(super) use node::PointAndNormal;
+use node::{ARITY, EmitterNode, TreeChild};
 use scene::DeltaLight;
 
 pub(super) use node::BY_POWER;
 
-/// A tree over area and delta lights, which are counted in this order.
+/// A tree over area and delta lights, whose indices count in this order.
 #[derive(Clone, Debug)]
 pub(super) struct EmitterTree {
-    /// Nodes of the cut from which the choice starts.
-    top: Vec<(Node, Child)>,
+    /// Nodes of the cut, among which the choice starts.
+    top: Vec<(EmitterNode, TreeChild)>,
     branches: Vec<Branch>,
-    /// Place of each emitter.
-    emitters: Vec<Place>,
-    /// Place of each branch.
-    parents: Vec<Place>,
+    /// Position of each emitter in the tree.
+    emitters: Vec<TreePlace>,
+    /// Position of each branch in the tree.
+    parents: Vec<TreePlace>,
 }
 
-/// Place of an emitter or branch in the tree.
+/// Position of an emitter or a branch in the tree.
 #[derive(Clone, Copy, Debug)]
-enum Place {
-    /// In the cut.
+enum TreePlace {
+    /// Node of the cut.
     Top(u32),
-    /// Below a branch, as a child.
+    /// Child of a branch.
     Below { branch: u32, slot: u32 },
 }
 
 impl EmitterTree {
-    /// Builds the tree, with a cut of at most `top` nodes, in a scene of the given diagonals: of all surfaces, and of
-    /// what positions are as precise as ([`scene::Scene::extent`]).
-    /// Returns it and the powers of the cut's nodes.
+    /// Builds the tree with a cut of at most `top` nodes. The diagonals are those of all surfaces and of the extent that
+    /// determines the precision of positions ([`scene::Scene::extent`]). Returns the tree and the powers of the cut's nodes.
     pub fn new(
         areas: &[AreaLight],
         deltas: &[DeltaLight],
@@ -66,63 +65,63 @@ impl EmitterTree {
         let mut tree = EmitterTree {
             top: Vec::new(),
             branches: Vec::new(),
-            emitters: vec![Place::Top(0); emitters.len()],
+            emitters: vec![TreePlace::Top(0); emitters.len()],
             parents: Vec::new(),
         };
         for (i, node) in cut.iter().enumerate() {
-            let child = tree.add(&binary, *node, Place::Top(i as u32), extent);
-            tree.top.push((Node::new(&binary[*node].bounds, extent), child));
+            let child = tree.add(&binary, *node, TreePlace::Top(i as u32), extent);
+            tree.top.push((EmitterNode::new(&binary[*node].bounds, extent), child));
         }
         (tree, cut.iter().map(|node| binary[*node].bounds.power).collect())
     }
 
-    /// Adds a binary node, and those below it, to the branches.
-    fn add(&mut self, binary: &[BinaryNode], node: usize, place: Place, extent: f32) -> Child {
+    /// Adds a binary node and the nodes below it to the branches.
+    fn add(&mut self, binary: &[BinaryNode], node: usize, place: TreePlace, extent: f32) -> TreeChild {
         if let Content::Emitter(emitter) = binary[node].content {
             self.emitters[emitter] = place;
-            return Child::emitter(emitter);
+            return TreeChild::emitter(emitter);
         }
         let members = cut(binary, node, ARITY);
         let index = self.branches.len();
         self.branches.push(Branch::new(&[]));
         self.parents.push(place);
         let total: f64 = members.iter().map(|m| f64::from(binary[*m].bounds.power)).sum();
-        let children: Vec<(Node, f32, Child)> = (0u32..)
+        let children: Vec<(EmitterNode, f32, TreeChild)> = (0u32..)
             .zip(&members)
             .map(|(slot, member)| {
                 let bounds = &binary[*member].bounds;
                 let share = f64::from(bounds.power) / total;
                 let share = if share.is_finite() { share as f32 } else { 0.0 };
-                let place = Place::Below { branch: index as u32, slot };
-                (Node::new(bounds, extent), share, self.add(binary, *member, place, extent))
+                let place = TreePlace::Below { branch: index as u32, slot };
+                (EmitterNode::new(bounds, extent), share, self.add(binary, *member, place, extent))
             })
             .collect();
         self.branches[index] = Branch::new(&children);
-        Child::branch(index)
+        TreeChild::branch(index)
     }
 
     /// Writes the importances of the cut's nodes.
     #[inline]
-    pub fn weigh(&self, at: Receivers16, weights: &mut [F32x16]) {
+    pub fn weigh(&self, x: &Vec3x16, n: &Vec3x16, weights: &mut [F32x16]) {
         for (w, (node, _)) in weights.iter_mut().zip(&self.top) {
             for i in 0..LANES {
-                w[i] = node.importance(at.position.get(i), at.normal.get(i));
+                w[i] = node.importance(PointAndNormal { x: x.get(i), n: n.get(i) });
             }
         }
     }
 
-    /// Number of nodes in the cut.
+    /// Returns the number of nodes in the cut.
     pub fn len(&self) -> usize {
         self.top.len()
     }
 
-    /// Chooses an emitter below node `top` of the cut; returns it and its probability there. `None` where none shines
-    /// on the point.
+    /// Chooses an emitter below node `top` of the cut. Returns the emitter and its probability below that node; `None` if
+    /// no emitter lights the point.
     #[inline]
     pub fn sample(
         &self,
         top: usize,
-        at: (Vec3, Vec3),
+        at: PointAndNormal,
         factors: Option<&[f32]>,
         mut u: f32,
     ) -> Option<(u32, f32)> {
@@ -139,14 +138,15 @@ impl EmitterTree {
         }
     }
 
-    /// Returns the node of the cut above an emitter, and the probability of [`EmitterTree::sample`] choosing it there.
+    /// Returns the node of the cut above an emitter, and the probability with which [`EmitterTree::sample`] chooses the
+    /// emitter below that node.
     #[inline]
-    pub fn probability(&self, emitter: usize, at: (Vec3, Vec3), factors: Option<&[f32]>) -> (usize, f32) {
+    pub fn probability(&self, emitter: usize, at: PointAndNormal, factors: Option<&[f32]>) -> (usize, f32) {
         let (mut place, mut probability) = (self.emitters[emitter], 1.0);
         loop {
             match place {
-                Place::Top(top) => return (top as usize, probability),
-                Place::Below { branch, slot } => {
+                TreePlace::Top(top) => return (top as usize, probability),
+                TreePlace::Below { branch, slot } => {
                     let branch = branch as usize;
                     let factors = factors.map(|factors| &factors[self.slot(branch, 0)..][..ARITY]);
                     probability *= self.branches[branch].probability(at, factors, slot as usize);
@@ -157,38 +157,38 @@ impl EmitterTree {
     }
 }
 
-/// Nodes by number: those of the cut, then the children of each branch.
+/// Numbering of the nodes: nodes of the cut, then the children of each branch.
 impl EmitterTree {
-    /// Number of all nodes, and of what branches might have more.
+    /// Returns the number of slots for nodes; every branch has as many as it may have children.
     fn slots(&self) -> usize {
         self.slot(self.branches.len(), 0)
     }
 
-    /// Number of a branch's child.
+    /// Returns the slot of a branch's child.
     #[inline]
     fn slot(&self, branch: usize, child: usize) -> usize {
         self.top.len() + branch * ARITY + child
     }
 
-    /// Number of the node at a place.
-    fn slot_at(&self, place: Place) -> usize {
+    /// Returns the slot of the node at a position.
+    fn slot_at(&self, place: TreePlace) -> usize {
         match place {
-            Place::Top(top) => top as usize,
-            Place::Below { branch, slot } => self.slot(branch as usize, slot as usize),
+            TreePlace::Top(top) => top as usize,
+            TreePlace::Below { branch, slot } => self.slot(branch as usize, slot as usize),
         }
     }
 
-    /// Numbers of an emitter's node and those above it.
+    /// Lists the slots of an emitter's node and of the nodes above it.
     fn slots_above(&self, emitter: usize) -> impl Iterator<Item = usize> {
-        let above = |place: &Place| match *place {
-            Place::Top(_) => None,
-            Place::Below { branch, .. } => Some(self.parents[branch as usize]),
+        let above = |place: &TreePlace| match *place {
+            TreePlace::Top(_) => None,
+            TreePlace::Below { branch, .. } => Some(self.parents[branch as usize]),
         };
         std::iter::successors(Some(self.emitters[emitter]), above).map(|place| self.slot_at(place))
     }
 }
 
-/// Returns the cut of at most `size` nodes below a node of the binary tree that splits the costliest ones.
+/// Returns a cut of at most `size` nodes below a node of the binary tree. Nodes of the highest cost are split first.
 fn cut(nodes: &[BinaryNode], root: usize, size: usize) -> Vec<usize> {
     let mut cut = vec![root];
     while cut.len() < size {

@@ -7,31 +7,39 @@ use glam::Vec3;
 /// Maximum number of children of a branch.
 pub const ARITY: usize = WIDTH;
 
-/// Slack of the extents, over the scene's: positions are rounded, and light that arrives must not have
-/// importance zero.
+/// Slack of the extents over the scene's extent. Light that arrives must not have importance zero because of rounding.
 const SLACK: f32 = 1e-5;
 
-/// Share of the choice between siblings that is by power, whatever the point.
+/// Share of the choice between siblings that is by power.
 pub const BY_POWER: f32 = 0.05;
 
-/// Minimum cosine by which an importance is reduced.
+/// Minimum cosine in an importance.
 const MIN_COS: f32 = 1e-3;
 
-/// Square of the minimum distance, over the square of the extent's radius.
+/// Squared minimum distance over the squared radius of the extent.
 const MIN_DIST_SQ: f32 = 0.25;
 
-/// Part of a node that the importance needs.
+/// Point to be lit and its normal, zero if light may come from both sides.
 #[derive(Clone, Copy, Debug)]
-pub struct Node {
+pub struct PointAndNormal {
+    /// Position.
+    pub x: Vec3,
+    /// Unit normal.
+    pub n: Vec3,
+}
+
+/// Quantities of a node that determine its importance.
+#[derive(Clone, Copy, Debug)]
+pub struct EmitterNode {
     /// Centre of a sphere around the positions.
     pub centre: Vec3,
-    /// Its radius.
+    /// Radius of that sphere.
     pub radius: f32,
     /// Axis of the cone of normals.
     pub axis: Vec3,
-    /// Cosine of its half angle; -2 for all directions.
+    /// Cosine of the cone's half angle; -2 for all directions.
     pub cos_normals: f32,
-    /// Its sine.
+    /// Sine of the cone's half angle.
     pub sin_normals: f32,
     /// Cosine of the largest angle between a normal and the light it stands for.
     pub cos_emission: f32,
@@ -39,12 +47,12 @@ pub struct Node {
     pub peak: f32,
 }
 
-impl Node {
-    /// Node of the given bounds, in a scene whose positions are as precise as its `extent` lets them be.
-    pub fn new(bounds: &EmitterBounds, extent: f32) -> Node {
+impl EmitterNode {
+    /// Builds the node of the given bounds; `extent` determines the precision of the scene's positions.
+    pub fn new(bounds: &EmitterBounds, extent: f32) -> EmitterNode {
         let cone = &bounds.cone;
         let all = cone.normals >= std::f32::consts::PI;
-        Node {
+        EmitterNode {
             centre: 0.5 * (bounds.low + bounds.high),
             radius: 0.5 * bounds.low.distance(bounds.high) + SLACK * extent,
             axis: cone.axis,
@@ -55,16 +63,16 @@ impl Node {
         }
     }
 
-    /// Estimates π times the irradiance at `x` on a surface of normal `n`; zero only where none of the members can
-    /// shine on that side (Conty Estevez & Kulla 2018, equation 3, with a bound of the cosine at the surface).
+    /// Estimates π times the irradiance at a point; zero only if no emitter of the node can light that side (Conty Estevez &
+    /// Kulla 2018, equation 3, with a bound of the cosine at the surface).
     #[inline(always)]
-    pub fn importance(&self, x: Vec3, n: Vec3) -> f32 {
+    pub fn importance(&self, PointAndNormal { x, n }: PointAndNormal) -> f32 {
         let to_light = self.centre - x;
         let radius_sq = self.radius * self.radius;
         let dist_sq = to_light.length_squared().max(MIN_DIST_SQ * radius_sq).max(f32::MIN_POSITIVE);
         let dist = dist_sq.sqrt();
-        // Cosines are scaled by the distance. That of an angle less the one in which the sphere is seen is at most the
-        // cosine of the angle plus that sine, the radius over the distance.
+        // Cosines are scaled by the distance. The cosine of an angle minus the angle that the sphere subtends is at most the
+        // cosine of the angle plus the sine of the other, which is the radius over the distance.
         let surface = n.dot(to_light) + self.radius;
         let cos_axis = -self.axis.dot(to_light);
         let sin_axis = (dist_sq - cos_axis * cos_axis).max(0.0).sqrt();
@@ -74,30 +82,30 @@ impl Node {
         let shines = (surface > 0.0) & (light > dist * self.cos_emission);
         let cosines = surface.max(MIN_COS * dist).min(dist) * light.max(MIN_COS * dist).min(dist);
         let importance = self.peak * cosines / (dist_sq * dist_sq).max(f32::MIN_POSITIVE);
-        // The minimum also replaces what is not a number.
+        // The minimum also replaces NaN.
         if shines { importance.min(f32::MAX / 64.0) } else { 0.0 }
     }
 }
 
-/// A child of a branch, or an entry of the top: an emitter, a branch, or none.
+/// A child of a branch or of the cut: an emitter or a branch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Child(u32);
+pub struct TreeChild(u32);
 
-/// Tells emitters from branches.
+/// Bit that marks emitters.
 const EMITTER: u32 = 1 << 31;
 
-impl Child {
-    /// The emitter of the given index.
-    pub fn emitter(index: usize) -> Child {
-        Child(index as u32 | EMITTER)
+impl TreeChild {
+    /// Makes the child that is the emitter of the given index.
+    pub fn emitter(index: usize) -> TreeChild {
+        TreeChild(index as u32 | EMITTER)
     }
 
-    /// The branch of the given index.
-    pub fn branch(index: usize) -> Child {
-        Child(index as u32)
+    /// Makes the child that is the branch of the given index.
+    pub fn branch(index: usize) -> TreeChild {
+        TreeChild(index as u32)
     }
 
-    /// Index of the branch, or that of the emitter as the error.
+    /// Returns the index of the branch; that of the emitter as the error.
     #[inline(always)]
     pub fn get(self) -> Result<usize, u32> {
         if self.0 & EMITTER == 0 { Ok(self.0 as usize) } else { Err(self.0 & !EMITTER) }

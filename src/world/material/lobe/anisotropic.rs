@@ -1,12 +1,12 @@
-//! Reflection by microfacets that are not as rough along the texture's u as along v: brushed metals.
+//! Reflection by microfacets whose roughness differs along u and v of the texture: brushed metals.
 //!
-//! Facets are those of an isotropic distribution of roughness 1 after a stretch of the surface, of (α_u, α_v, 1) for
-//! directions, so that density, masking and sampling follow from that one ([`Microfacets`]). Local x is along u.
+//! The facets are those of an isotropic distribution of roughness 1 after a stretch of the surface by (α_u, α_v, 1).
+//! Density, masking and sampling follow from that distribution ([`Microfacets`]). Local x is along u.
 //!
 //! Paper: E. Heitz, *Understanding the Masking-Shadowing Function in Microfacet-Based BRDFs*, 2014, section 5.3.
-//! Deviations: eye paths follow the lobe however rough it is, as virtual lights and series know no direction on the
-//! surface; its bounds are those of the larger roughness for the density and of the smaller for masking; the albedo by
-//! which lobes are chosen is the mean over azimuths.
+//! Deviations: eye paths follow the lobe for any roughness, because virtual lights and series do not support a direction on
+//! the surface. The bounds use the larger roughness for the density and the smaller one for masking. The albedo is the mean
+//! over azimuths.
 
 use super::{DirectionBound, Directions, Directions16, FacetBound, FacetBounds16, LobeLanes, mean};
 use crate::material::fresnel::Curve;
@@ -18,19 +18,19 @@ use scene::{Distribution, Fresnel};
 use std::f32::consts::FRAC_PI_2;
 use std::sync::Arc;
 
-/// Azimuths over a quarter of the circle of which the albedo is the mean.
+/// Number of azimuths in a quarter of the circle over which the albedo is averaged.
 const AZIMUTHS: usize = 4;
 
-/// Factor by which masking may exceed that of the smaller roughness: Walter's fit of Beckmann's overshoots 1 by 7e-5
-/// shortly before it is cut off.
+/// Factor by which masking may exceed that of the smaller roughness, because Walter's fit of Beckmann's masking exceeds 1
+/// by 7e-5.
 const OVERSHOOT: f32 = 1.0001;
 
-/// Anisotropic lobe without its factor. Two are equal if roughness and Fresnel reflectance agree.
+/// Anisotropic lobe without its factor. Lobes are equal if roughness and Fresnel reflectance are.
 #[derive(Clone, Debug)]
 pub(in crate::material) struct AnisotropicLobe {
     /// The distribution of roughness 1.
     unit: Microfacets,
-    /// Those of the smaller and the larger roughness.
+    /// Distributions of the smaller and the larger roughness.
     ends: [Microfacets; 2],
     /// Roughness along x and y.
     alpha: Vec2,
@@ -45,7 +45,7 @@ impl PartialEq for AnisotropicLobe {
 }
 
 impl AnisotropicLobe {
-    /// Lobe of a roughness along x and y.
+    /// Builds a lobe of a roughness along x and one along y.
     pub fn new(distribution: Distribution, alpha: [f32; 2], fresnel: Fresnel) -> AnisotropicLobe {
         let ends = [alpha[0].min(alpha[1]), alpha[0].max(alpha[1])];
         let ends = ends.map(|alpha| Microfacets::new(distribution, alpha));
@@ -58,7 +58,7 @@ impl AnisotropicLobe {
         lobe
     }
 
-    /// Light from the inclination of `wo`, in the xz plane, that is reflected: the mean over azimuths.
+    /// Integrates the albedo for the inclination of `wo`, in the xz plane, as the mean over azimuths.
     fn integrated(&self, wo: Vec3, rule: &[(f32, f32)]) -> Rgb {
         let mut sum = Rgb::ZERO;
         for i in 0..AZIMUTHS {
@@ -74,20 +74,20 @@ impl AnisotropicLobe {
         sum / AZIMUTHS as f32
     }
 
-    /// Direction after the stretch, not of unit length.
+    /// Returns a direction after the stretch, not of unit length.
     #[inline]
     fn stretched(&self, v: Vec3) -> Vec3 {
         Vec3::new(v.x * self.alpha.x, v.y * self.alpha.y, v.z)
     }
 
-    /// Area of facets with unit normal `h` per area and solid angle.
+    /// Returns the area of facets with unit normal `h` per area and solid angle.
     #[inline]
     fn density(&self, h: Vec3) -> f32 {
         let slopes = Vec2::new(h.x, h.y) / self.alpha;
         self.unit.density_from(slopes.length_squared(), h.z * h.z) / (self.alpha.x * self.alpha.y)
     }
 
-    /// G1 / (2 cos θ) for the unit direction `v` above the surface.
+    /// Returns V1 = G1 / (2 cos θ) for the unit direction `v` above the surface.
     #[inline]
     fn v1(&self, v: Vec3) -> f32 {
         let stretched = self.stretched(v);
@@ -95,7 +95,7 @@ impl AnisotropicLobe {
         self.unit.v1((stretched.z / length).min(1.0)) / length
     }
 
-    /// The same of the density of visible normals (see [`Microfacets::v1_exact`]).
+    /// Returns the V1 of the density of visible normals (see [`Microfacets::v1_exact`]).
     #[inline]
     fn v1_exact(&self, v: Vec3) -> f32 {
         let stretched = self.stretched(v);
@@ -124,7 +124,7 @@ impl AnisotropicLobe {
         (wo.z > 0.0 && wi.z > 0.0).then_some(Directions { wo, wi, half })
     }
 
-    /// Share of the light at the cosine `cos` that is reflected, the mean over azimuths.
+    /// Returns the albedo for light at the cosine `cos`, averaged over azimuths.
     #[inline]
     pub fn albedo(&self, scale: Rgb, cos: f32) -> Rgb {
         scale * self.albedo.lookup(cos)
@@ -136,7 +136,7 @@ impl AnisotropicLobe {
         if cos > 0.0 { mean(self.albedo(scale, cos)) } else { 0.0 }
     }
 
-    /// Maximum of the value times the cosine, less the factor.
+    /// Returns a bound of value times cosine, without the factor.
     #[inline]
     fn most(&self, masking: f32, sin_sq: f32, cos_max: f32, cos_d: f32) -> Rgb {
         let [narrow, wide] = &self.ends;

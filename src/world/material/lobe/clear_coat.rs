@@ -1,8 +1,8 @@
 //! Second specular lobe of the principled material: facets of Burley's distribution GTR1 under a clear varnish.
 //!
-//! Paper: B. Burley, *Physically Based Shading at Disney*, 2012, section 5.6 and appendix B. As there, and in Mitsuba
-//! 3, it has no division by the cosines, masking is that of α = .25, and the factor a quarter of what it says.
-//! Deviations: Fresnel's reflectance is Schlick's for an index of 1.5, whatever that of the material.
+//! Paper: B. Burley, *Physically Based Shading at Disney*, 2012, section 5.6 and appendix B. As in the paper and in Mitsuba
+//! 3, there is no division by the cosines, masking is that of α = 0.25, and a factor of 1 gives a quarter of the light.
+//! Deviations: the Fresnel reflectance is Schlick's for an index of 1.5, for every material.
 
 use super::{DirectionBound, Directions, Directions16, FacetBound, FacetBounds16, LobeLanes, mean};
 use crate::material::fresnel::schlick_weight;
@@ -15,10 +15,10 @@ use std::f32::consts::{PI, TAU};
 /// Reflectance at normal incidence.
 const F0: f32 = 0.04;
 
-/// Roughness by which facets mask each other.
+/// Roughness α of the masking.
 const MASKING_ALPHA: f32 = 0.25;
 
-/// Share of the light that the factor 1 stands for.
+/// Share of the light that a factor of 1 gives.
 const STRENGTH: f32 = 0.25;
 
 /// Clear coat without its factor.
@@ -29,25 +29,26 @@ pub(in crate::material) struct ClearCoat {
 }
 
 impl ClearCoat {
-    /// Coat of a gloss from 0 to 1.
+    /// Builds a coat of a gloss from 0 to 1.
     pub fn new(gloss: f32) -> ClearCoat {
         let alpha = 0.1 + gloss.clamp(0.0, 1.0) * (0.001 - 0.1);
         ClearCoat { alpha_sq: alpha * alpha, masking: Microfacets::new(Distribution::Ggx, MASKING_ALPHA) }
     }
 
-    /// Density of facets whose inclination has this squared cosine.
+    /// Returns the density of facets from the squared cosine of their inclination.
     #[inline]
     fn density(&self, cos_sq: f32) -> f32 {
         let a = self.alpha_sq - 1.0;
         a / (PI * self.alpha_sq.ln() * (1.0 + a * cos_sq))
     }
 
-    /// Share of facets that is not masked.
+    /// Returns the share of facets that is not masked.
     #[inline]
     fn g1(&self, cos: f32) -> f32 {
         2.0 * cos * self.masking.v1(cos)
     }
 
+    /// Returns the reflectance of a facet at the cosine `cos`.
     #[inline]
     fn reflectance(cos: f32) -> f32 {
         F0 + (1.0 - F0) * schlick_weight(cos)
@@ -79,7 +80,7 @@ impl ClearCoat {
         (wo.z > 0.0 && wi.z > 0.0 && wo.dot(half) > 0.0).then_some(Directions { wo, wi, half })
     }
 
-    /// Share of the light at `cos` > 0 that is reflected, were the facets all level.
+    /// Returns the share of the light at `cos` > 0 that level facets would reflect.
     #[inline]
     pub fn albedo(&self, scale: Rgb, cos: f32) -> Rgb {
         let cos = cos.clamp(0.0, 1.0);
@@ -89,7 +90,7 @@ impl ClearCoat {
     /// See [`super::LobeModel::sampling_weight`].
     #[inline]
     pub fn sampling_weight(&self, scale: Rgb, cos: f32) -> f32 {
-        // The floor keeps facets that are inclined in it, where level ones reflect little.
+        // The floor accounts for inclined facets, which reflect light where level facets hardly do.
         if cos > 0.0 { mean(self.albedo(scale, cos)).max(0.02 * mean(scale)) } else { 0.0 }
     }
 

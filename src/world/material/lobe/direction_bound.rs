@@ -2,15 +2,15 @@
 
 use base::math::F32x16;
 
-/// Bounds of a set of directions towards light. The normal is the one on the side of `wo`: for a
-/// two-sided surface seen from behind, the reversed shading normal.
+/// Bounds of a set of directions towards light. The normal is on the side of `wo`: it is the reversed shading normal if a
+/// two-sided surface is seen from behind.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DirectionBound {
-    /// No direction's cosine to the normal is larger; where this is <= 0 nothing is reflected.
+    /// Maximum cosine to the normal. If it is <= 0, nothing is reflected.
     pub cos_i_max: f32,
-    /// No direction's cosine to the normal is smaller. Anything <= 0 means that grazing light is possible.
+    /// Minimum cosine to the normal. If it is <= 0, grazing light is possible.
     pub cos_i_min: f32,
-    /// No direction's cosine to the mirror direction of `wo` is larger.
+    /// Maximum cosine to the mirror direction of `wo`.
     pub cos_mirror_max: f32,
 }
 
@@ -19,7 +19,7 @@ impl DirectionBound {
     pub(in crate::material) const WIDER: f32 = 1.000_01;
 }
 
-/// Bounds of the directions towards light, by lane; see [`DirectionBound`].
+/// Bounds of the directions towards light in sixteen lanes; see [`DirectionBound`].
 #[derive(Clone, Copy, Debug, Default)]
 pub struct DirectionBounds16 {
     /// Maximum cosine to the normal, at most 1.

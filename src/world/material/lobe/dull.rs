@@ -1,4 +1,4 @@
-//! Lobes that scatter light broadly, as tables of their values see them.
+//! Lobes that scatter light broadly, to be tabulated.
 
 use super::{Directions, LobeModel};
 use base::math::Rgb;
@@ -9,11 +9,12 @@ use glam::Vec3;
 pub struct DullLobe<'m>(&'m LobeModel);
 
 impl<'m> DullLobe<'m> {
+    /// Wraps a lobe.
     pub(in crate::material) fn new(lobe: &'m LobeModel) -> DullLobe<'m> {
         DullLobe(lobe)
     }
 
-    /// Returns the roughness α; infinity of lobes that have none, which are broader than any of microfacets.
+    /// Returns the roughness α; infinity for lobes without microfacets, which are broader.
     pub fn alpha(&self) -> f32 {
         match self.0 {
             LobeModel::Rough(rough) => rough.alpha(),

@@ -1,5 +1,5 @@
-//! Light scattered at grazing angles, broadly: the retroreflection of rough diffuse surfaces and the sheen of fibres,
-//! as the principled material has them.
+//! Broad scattering at grazing angles: retroreflection of rough diffuse surfaces and sheen of fibres, for the principled
+//! material.
 //!
 //! Paper: B. Burley, *Extending the Disney BRDF to a BSDF with Integrated Subsurface Scattering*, 2015, equation 4;
 //! *Physically Based Shading at Disney*, 2012, section 5.2.
@@ -13,21 +13,23 @@ use glam::{Vec2, Vec3};
 use std::f32::consts::{FRAC_1_PI, PI};
 use std::sync::Arc;
 
-/// Function of the two directions.
+/// Kind of grazing scattering.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(in crate::material) enum GrazingKind {
-    /// Retroreflection, by the square root of α.
+    /// Retroreflection of a rough diffuse surface.
     Retro {
+        /// Square root of α.
         roughness: f32,
     },
+    /// Sheen of fibres.
     Sheen,
 }
 
-/// Lobe without its factor.
+/// Lobe of grazing scattering without its factor.
 #[derive(Clone, Debug)]
 pub(in crate::material) struct Grazing {
     kind: GrazingKind,
-    /// Share of the light from each angle that is reflected.
+    /// Albedo by angle.
     albedo: Arc<AngleTable<f32>>,
 }
 
@@ -38,8 +40,9 @@ impl PartialEq for Grazing {
 }
 
 impl GrazingKind {
-    /// Value in 1/sr, from the weights of Schlick's approximation for both directions and the squared cosine between
-    /// either and the half-way normal. It grows with both weights; and with the cosine, but for sheen, where it falls.
+    /// Returns the value in 1/sr from the weights of Schlick's approximation for both directions and the cosine between either
+    /// direction and the half-way normal. The value grows with both weights. It grows with the cosine for retroreflection and
+    /// falls for sheen.
     #[inline]
     fn value(self, [out, into]: [f32; 2], cos_d: f32) -> f32 {
         match self {
@@ -51,7 +54,7 @@ impl GrazingKind {
         }
     }
 
-    /// Largest value where the cosine with the half-way normal is no less than `cos_d`.
+    /// Returns the maximum value for cosines with the half-way normal of at least `cos_d`.
     #[inline]
     fn max_value(self, weights: [f32; 2], cos_d: f32) -> f32 {
         match self {
@@ -62,13 +65,13 @@ impl GrazingKind {
 }
 
 impl Grazing {
-    /// Lobe of a kind, its albedo tabulated.
+    /// Builds a lobe and tabulates its albedo.
     pub fn new(kind: GrazingKind) -> Grazing {
         let nodes = rule(24);
         let albedo = AngleTable::new(|wo| {
             let mut sum = 0.0;
             for &(u, weight_u) in &nodes {
-                // Even steps of the cosine's square are even in irradiance.
+                // Equal steps of the squared cosine are equal in irradiance.
                 let (cos, sin) = (u.sqrt(), (1.0 - u).sqrt());
                 for &(v, weight_v) in &nodes {
                     let (sin_phi, cos_phi) = (PI * v).sin_cos();
@@ -98,7 +101,7 @@ impl Grazing {
         Directions::new(wo, cosine_hemisphere(u)).filter(|_| wo.z > 0.0)
     }
 
-    /// Albedo for light at the cosine `cos` > 0.
+    /// Returns the albedo for light at the cosine `cos` > 0.
     #[inline]
     pub fn albedo(&self, scale: Rgb, cos: f32) -> Rgb {
         if cos > 0.0 { scale * self.albedo.lookup(cos) } else { Rgb::ZERO }
@@ -140,7 +143,7 @@ impl Grazing {
     }
 }
 
-/// Weights of Schlick's approximation for both directions.
+/// Returns the weights of Schlick's approximation for both directions.
 #[inline]
 fn weights(d: &Directions) -> [f32; 2] {
     [schlick_weight(d.wo.z), schlick_weight(d.wi.z)]

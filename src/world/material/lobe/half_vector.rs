@@ -1,21 +1,19 @@
-//! Two directions and the facet normal half-way between them, and bounds of that normal for a set of
-//! directions.
+//! Two directions and the facet normal half-way between them, and bounds of that normal for a set of directions.
 //!
-//! With c = cos θ_i and m = wi · (mirror direction of wo), the other angles follow: wo · wi = 2 cos θ_o c -
-//! m, so the facet normal h half-way between has cos² θ_h = (cos θ_o + c)² / (2 + 4 cos θ_o c - 2 m), and
-//! cos² (wo, h) = (1 + 2 cos θ_o c - m) / 2. The first grows with m and has no maximum in c between the ends
-//! of its range; the second is least at the smallest c and the largest m. Independently of c, the angle
-//! between n and h is at least half that between wi and the mirror direction, and the angle between wo and h
-//! at most half the sum of the two inclinations.
+//! With c = cos θ_i and m = wi · (mirror direction of wo), wo · wi = 2 cos θ_o c - m. So the half-way normal h has
+//! cos² θ_h = (cos θ_o + c)² / (2 + 4 cos θ_o c - 2 m) and cos² (wo, h) = (1 + 2 cos θ_o c - m) / 2. The first grows with m
+//! and has no maximum in c between the ends of its range. The second is least at the smallest c and the largest m.
+//! Independently of c, the angle between n and h is at least half that between wi and the mirror direction, and the angle
+//! between wo and h is at most half the sum of the two inclinations.
 
 use super::{DirectionBound, DirectionBounds16};
 use base::math::{F32x16, LANES, Vec3x16};
 use glam::Vec3;
 
-/// Rounding of a cosine or of a product of two, in the caller and here. It matters for α below 0.01.
+/// Rounding error of a cosine or of a product of two. It matters for α below 0.01.
 const SLACK: f32 = 5e-7;
 
-/// Squared length of the sum of two unit directions below which they are opposite and no facet is seen.
+/// Squared length of the sum of two unit directions below which they count as opposite, so that no facet is visible.
 const MIN_SUM_SQ: f32 = 1e-20;
 
 /// Pair of directions.
@@ -28,7 +26,7 @@ pub(in crate::material) struct Directions {
 }
 
 impl Directions {
-    /// Returns `None` where both are grazing and opposite: no facet is seen at all.
+    /// Pairs two directions; `None` if they are opposite, so that no facet is visible.
     #[inline]
     pub fn new(wo: Vec3, wi: Vec3) -> Option<Directions> {
         let sum = wo + wi;
@@ -41,7 +39,7 @@ impl Directions {
 pub(in crate::material) struct Directions16<'a> {
     pub wo: &'a Vec3x16,
     pub wi: &'a Vec3x16,
-    /// Squared sines of the facet normals' inclinations; 0, as the cosines, where no facet is seen.
+    /// Squared sines of the facet normals' inclinations; 0, like the cosines, if no facet is visible.
     pub sin_sq: F32x16,
     /// Squared cosines of the facet normals' inclinations.
     pub cos_sq: F32x16,
@@ -50,6 +48,7 @@ pub(in crate::material) struct Directions16<'a> {
 }
 
 impl Directions16<'_> {
+    /// Pairs the directions of each lane.
     #[inline(always)]
     pub fn new<'a>(wo: &'a Vec3x16, wi: &'a Vec3x16) -> Directions16<'a> {
         let zero = [0.0; LANES];
@@ -83,7 +82,7 @@ pub(in crate::material) struct FacetBound {
 }
 
 impl FacetBound {
-    /// Bounds the facets; `cos_max` is that of the bound, at most 1 and above 0.
+    /// Bounds the facets. `cos_max` is that of the bound, at most 1 and above 0.
     #[inline]
     pub fn new(cos_o: f32, cos_max: f32, bound: &DirectionBound) -> FacetBound {
         let cos_o = cos_o.min(1.0);
@@ -98,7 +97,7 @@ impl FacetBound {
     }
 }
 
-/// [`FacetBound`] in all lanes; lanes whose directions are all below the horizon may hold anything.
+/// [`FacetBound`] in all lanes. Lanes whose directions are all below the horizon are undefined.
 pub(in crate::material) struct FacetBounds16<'a> {
     pub cos_max: &'a F32x16,
     pub cos_min: F32x16,
@@ -107,6 +106,7 @@ pub(in crate::material) struct FacetBounds16<'a> {
 }
 
 impl FacetBounds16<'_> {
+    /// Bounds the facets of each lane.
     #[inline(always)]
     pub fn new<'a>(cos_o: &F32x16, bounds: &'a DirectionBounds16) -> FacetBounds16<'a> {
         let (mut sin_sq, mut cos_d, mut least) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
@@ -128,8 +128,8 @@ impl FacetBounds16<'_> {
 #[inline(always)]
 fn min_sin_sq(cos_o: f32, cos_i_min: f32, cos_i_max: f32, cos_mirror: f32) -> f32 {
     let at = |cos_i: f32| {
-        // 1 - cos² θ_h, the numerator arranged so that nothing large cancels. Where cos_i and cos_mirror
-        // exclude each other this may be anything; the bound below then decides.
+        // 1 - cos² θ_h; the order of the numerator avoids cancellation. The value is undefined if cos_i and cos_mirror
+        // exclude each other; the bound below holds in that case.
         let length_sq = 2.0 + 4.0 * cos_o * cos_i - 2.0 * cos_mirror;
         let difference = cos_o - cos_i;
         (2.0 * (1.0 - cos_mirror - SLACK) - difference * difference) / length_sq.max(SLACK)

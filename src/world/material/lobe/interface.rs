@@ -1,4 +1,4 @@
-//! Specular reflection and refraction by a smooth dielectric interface, two lobes with a factor each.
+//! Specular reflection and refraction by a smooth dielectric interface: two lobes, each with its factor.
 
 use super::BsdfSample;
 use super::mean;
@@ -7,7 +7,7 @@ use crate::material::fresnel;
 use base::math::Rgb;
 use glam::Vec3;
 
-/// Interface, of which one of the two ways on is this lobe's.
+/// Smooth interface, for either reflection or refraction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(in crate::material) struct Interface {
     /// Index of refraction behind the normal over that in front.
@@ -17,7 +17,7 @@ pub(in crate::material) struct Interface {
     pub passage: Passage,
 }
 
-/// Way on from an interface.
+/// Reflection or refraction at an interface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::material) enum Passage {
     Reflection,
@@ -58,36 +58,36 @@ impl Interface {
         }
     }
 
-    /// Returns true if light goes on in the direction that it comes in.
+    /// Returns true if light keeps its direction.
     #[inline]
     pub fn passes_straight(&self) -> bool {
         self.passage == Passage::Refraction && (self.thin || self.eta == 1.0)
     }
 
-    /// Returns true if light goes on in another direction.
+    /// Returns true if light changes its direction.
     pub fn bends(&self) -> bool {
         self.eta != 1.0 && !self.passes_straight()
     }
 
-    /// Solves the interface, or of a sheet both, with the sum of all reflections between them.
+    /// Solves the interface; for a thin sheet, both interfaces with all reflections between them.
     #[inline]
-    fn interface(&self, cos: f32) -> fresnel::Interface {
+    fn interface(&self, cos: f32) -> fresnel::Refraction {
         if !self.thin {
             return fresnel::interface(cos, self.eta);
         }
         let one = fresnel::interface(cos.abs(), self.eta);
         let reflectance = 2.0 * one.reflectance / (1.0 + one.reflectance);
-        fresnel::Interface { reflectance, cos_t: cos.abs(), eta: 1.0 }
+        fresnel::Refraction { reflectance, cos_t: cos.abs(), eta: 1.0 }
     }
 
     /// Returns the factor on radiance.
     #[inline]
-    fn weight(&self, scale: Rgb, interface: &fresnel::Interface) -> Rgb {
+    fn weight(&self, scale: Rgb, interface: &fresnel::Refraction) -> Rgb {
         match self.passage {
             Passage::Reflection => scale * interface.reflectance,
             Passage::Refraction => {
                 let inv_eta = 1.0 / interface.eta;
-                // The solid angle of a pencil of rays changes at the interface, and radiance with it.
+                // Refraction changes the solid angle of a pencil of rays, and radiance with it.
                 scale * ((1.0 - interface.reflectance) * inv_eta * inv_eta)
             }
         }

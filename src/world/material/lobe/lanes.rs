@@ -5,9 +5,9 @@ use base::math::{F32x16, LANES, Rgb, Vec3x16};
 /// Data of a lobe at sixteen points.
 #[derive(Clone, Copy, Debug, Default)]
 pub(in crate::material) struct LobeLanes {
-    /// Factors; zero where nothing is reflected.
+    /// Factors; zero if nothing is reflected.
     pub scale: Vec3x16,
-    /// Masking of `wo`, where facets mask each other.
+    /// Masking of `wo`, for lobes of facets.
     pub masking: F32x16,
 }
 

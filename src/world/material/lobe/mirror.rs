@@ -1,4 +1,4 @@
-//! Specular reflection by the front of a surface.
+//! Specular reflection on the front of a surface.
 
 use super::BsdfSample;
 use crate::material::fresnel::Curve;
@@ -6,7 +6,7 @@ use base::math::Rgb;
 use glam::Vec3;
 use scene::Fresnel;
 
-/// Mirror of given reflectance by angle.
+/// Mirror with a reflectance by angle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(in crate::material) struct Mirror {
     pub fresnel: Fresnel,

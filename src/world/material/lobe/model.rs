@@ -7,10 +7,10 @@ use super::{
 use base::math::{Rgb, Vec3x16};
 use glam::{Vec2, Vec3};
 
-/// Maximum number of lobes of a BSDF.
+/// Maximum number of lobes of a material.
 pub(in crate::material) const MAX_LOBES: usize = 6;
 
-/// Lobe without its factor.
+/// Lobe of any kind, without its factor.
 #[derive(Clone, Debug, PartialEq)]
 pub(in crate::material) enum LobeModel {
     Rough(RoughLobe),
@@ -20,18 +20,18 @@ pub(in crate::material) enum LobeModel {
     RoughInterface(RoughInterface),
     ClearCoat(ClearCoat),
     Grazing(Grazing),
-    /// Place where there is no surface, for a share of the light.
+    /// Gaps in the surface, through which light passes straight.
     Gap,
 }
 
 impl LobeModel {
-    /// Returns true if light goes on into isolated directions, so that value and density are 0 everywhere.
+    /// Returns true if the lobe scatters into isolated directions, so that value and density are 0 everywhere.
     #[inline]
     pub fn is_delta(&self) -> bool {
         matches!(self, LobeModel::Mirror(_) | LobeModel::Interface(_) | LobeModel::Gap)
     }
 
-    /// Returns true if light goes on in another direction than it comes in as by mirrors and glass, be it rough.
+    /// Returns true if the lobe changes the direction of light as mirrors and smooth or rough glass do.
     pub fn bends(&self) -> bool {
         match self {
             LobeModel::Mirror(_) | LobeModel::RoughInterface(_) => true,
@@ -44,7 +44,7 @@ impl LobeModel {
         }
     }
 
-    /// Returns true if light goes on in the direction that it comes in.
+    /// Returns true if light keeps its direction.
     #[inline]
     pub fn passes_straight(&self) -> bool {
         match self {
@@ -59,13 +59,13 @@ impl LobeModel {
         matches!(self, LobeModel::Interface(_) | LobeModel::RoughInterface(_))
     }
 
-    /// Returns true if light goes on to the other side in more than isolated directions.
+    /// Returns true if the lobe scatters light to the other side in more than isolated directions.
     #[inline]
     pub fn scatters_across(&self) -> bool {
         matches!(self, LobeModel::RoughInterface(_))
     }
 
-    /// Returns true if it is a rough lobe too sharp to pass for diffuse.
+    /// Returns true if the lobe is rough, but too sharp to count as diffuse.
     #[inline]
     pub fn is_glossy(&self) -> bool {
         match self {
@@ -75,9 +75,9 @@ impl LobeModel {
         }
     }
 
-    /// Returns true if eye paths follow the lobe by sampling it, as they do a mirror: light cuts would show single virtual
-    /// lights in it. Lobes that scatter light across the surface are followed, too, as cuts gather on one side, and
-    /// anisotropic ones, of whose direction on the surface cuts know nothing.
+    /// Returns true if eye paths follow the lobe by sampling it, as they follow a mirror: lightcuts would show single virtual
+    /// lights in it. Eye paths also follow lobes that scatter light across the surface, because cuts gather on one side, and
+    /// anisotropic lobes, because cuts do not support a direction on the surface.
     #[inline]
     pub fn is_sharp(&self) -> bool {
         match self {
@@ -87,7 +87,8 @@ impl LobeModel {
         }
     }
 
-    /// Index of refraction on the far side over that on the side of `wo`, if a lobe that scatters refracts; else 1.
+    /// Returns the index of refraction on the far side over that on the side of `wo` for a rough lobe that refracts; 1 for
+    /// other lobes.
     #[inline]
     pub fn refraction(&self, wo: Vec3) -> f32 {
         match self {
@@ -96,7 +97,7 @@ impl LobeModel {
         }
     }
 
-    /// Returns value and density; the latter times `probability`, that of choosing the lobe.
+    /// Returns value and density. `probability`, with which the lobe is chosen, is a factor on the density.
     #[inline(always)]
     pub fn eval_pdf(&self, scale: Rgb, probability: f32, directions: &Directions) -> (Rgb, f32) {
         match self {
@@ -109,8 +110,7 @@ impl LobeModel {
         }
     }
 
-    /// Samples a direction in proportion to the lobe, if it is not a delta lobe and the facet chosen does not
-    /// send the light into the surface.
+    /// Samples a direction; `None` for delta lobes, or if the sampled facet reflects light into the surface.
     #[inline]
     pub fn sample(&self, wo: Vec3, u: Vec2) -> Option<Directions> {
         match self {
@@ -123,7 +123,7 @@ impl LobeModel {
         }
     }
 
-    /// Returns the direction in which a delta lobe sends light from `wo`, with probability 1.
+    /// Returns the direction into which a delta lobe scatters light from `wo`, with probability 1.
     #[inline(always)]
     pub fn delta(&self, scale: Rgb, wo: Vec3) -> Option<BsdfSample> {
         match self {
@@ -137,7 +137,7 @@ impl LobeModel {
         }
     }
 
-    /// Estimates the share of the light from `wo` that the lobe scatters, a weight for choosing among lobes.
+    /// Estimates the share of the light from `wo` that the lobe scatters, as a weight for the choice of a lobe.
     /// `transmittance` is the coat's for `wo`.
     #[inline(always)]
     pub fn sampling_weight(&self, scale: Rgb, wo: Vec3, transmittance: f32) -> f32 {
@@ -153,7 +153,7 @@ impl LobeModel {
         }
     }
 
-    /// Albedo for light at the cosine `cos` > 0; 0 for delta lobes.
+    /// Returns the albedo for light at the cosine `cos` > 0; 0 for delta lobes.
     pub fn albedo(&self, scale: Rgb, cos: f32) -> Rgb {
         match self {
             LobeModel::Rough(rough) => rough.mean_reflectance(scale, cos),
@@ -165,7 +165,7 @@ impl LobeModel {
         }
     }
 
-    /// Returns the albedo for light at the cosine `cos` > 0, where the lobe is wide enough to pass for diffuse.
+    /// Returns the albedo for light at the cosine `cos` > 0, if the lobe is wide enough to count as diffuse.
     #[inline]
     pub fn diffuse_albedo(&self, scale: Rgb, cos: f32) -> Option<Rgb> {
         match self {
@@ -175,8 +175,8 @@ impl LobeModel {
         }
     }
 
-    /// Returns what a virtual light radiates for light at the cosine `cos` > 0, where the lobe is wide enough for one
-    /// and reflects too much to pass for diffuse.
+    /// Returns the light that a virtual light radiates by the lobe, for light at the cosine `cos` > 0, if the lobe is wide
+    /// enough for one and reflects too much to count as diffuse.
     #[inline]
     pub fn reflected(&self, scale: Rgb, cos: f32) -> Option<ReflectedLobe> {
         match self {
@@ -185,7 +185,7 @@ impl LobeModel {
         }
     }
 
-    /// Returns an upper bound of value times cosine; 0 for delta lobes and those that scatter light across the surface.
+    /// Returns an upper bound of value times cosine; 0 for delta lobes and lobes that scatter light across the surface.
     #[inline(always)]
     pub fn bound(&self, scale: Rgb, bound: &FacetBound) -> Rgb {
         match self {
@@ -197,7 +197,7 @@ impl LobeModel {
         }
     }
 
-    /// Sets a lane for `wo` on the side of the normal.
+    /// Sets a lane for `wo`, which is on the side of the normal.
     #[inline]
     pub fn set_lane(&self, lanes: &mut LobeLanes, lane: usize, scale: Rgb, wo: Vec3) {
         match self {

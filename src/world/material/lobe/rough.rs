@@ -1,11 +1,11 @@
 //! Reflection by isotropic microfacets.
 //!
-//! The value is F D V1(wo) V1(wi), the density of sampling visible normals D V1(wo) / 2 (see [`Microfacets`]). For the
-//! bound, D and the Fresnel reflectance F are bounded by the half-way normals that a set of directions allows
-//! ([`FacetBound`]); masking times cosine grows with the cosine.
+//! The value is F D V1(wo) V1(wi), the density of sampling visible normals D V1(wo) / 2 (see [`Microfacets`]). The bound takes
+//! the maxima of D and of the Fresnel reflectance F over the half-way normals that a set of directions allows
+//! ([`FacetBound`]). Masking times cosine grows with the cosine.
 //!
-//! Paper: Walter et al., *Lightcuts*, 2005, section 4.1, for the use made of such bounds.
-//! Deviations: single scattering only; the energy that masking takes is lost.
+//! Paper: Walter et al., *Lightcuts*, 2005, section 4.1 (bounds).
+//! Deviations: single scattering only; masked light is lost.
 
 use super::{
     DirectionBound, Directions, Directions16, FacetBound, FacetBounds16, LobeLanes, LobeShape, ReflectedLobe,
@@ -19,29 +19,26 @@ use glam::{Vec2, Vec3};
 use scene::Fresnel;
 use std::sync::Arc;
 
-/// Minimum roughness of lobes that count as diffuse where a surface becomes a virtual light. Paths from the eye find
-/// the light that comes over sharper ones, as they do over mirrors: spread evenly it would be much too bright in most
-/// places and too dark in the others. With 0.4 for 0.25 a polished knot gains a tenth in FLIP, a church with a glossy
-/// floor takes an eighth more time for .2 dB less.
+/// Minimum roughness α of lobes that count as diffuse in virtual lights. Eye paths carry the light of sharper lobes.
 pub(in crate::material) const DIFFUSE_ALPHA: f32 = 0.25;
 
-/// Maximum reflectance at normal incidence of lobes that count as diffuse in virtual lights: those of plastics.
+/// Maximum reflectance at normal incidence of lobes that count as diffuse in virtual lights.
 const DIFFUSE_REFLECTANCE: f32 = 0.1;
 
-/// Lobes up to this rough are followed from the eye like mirrors, by a sampled direction: light sampled along them
-/// says more than a sum over virtual lights, each of which would show as a highlight.
+/// Maximum roughness α of lobes that eye paths follow like mirrors, because each virtual light would show as a highlight
+/// in them.
 const SHARP_ALPHA: f32 = 0.1;
 
-/// Rough reflection lobe without its factor. Two are equal if roughness and Fresnel reflectance agree.
+/// Rough reflection lobe without its factor. Lobes are equal if roughness and Fresnel reflectance are.
 #[derive(Clone, Debug)]
 pub(in crate::material) struct RoughLobe {
     pub(in crate::material) facets: Microfacets,
     pub(in crate::material) fresnel: Fresnel,
-    /// Maximum reflectance of a conductor by the least cosine: its formula costs more than the rest of a bound.
+    /// Maximum reflectance by the minimum cosine, for curves whose formula is slow.
     max_reflectance: Option<Arc<AngleTable<Rgb>>>,
-    /// Albedo by angle, where something asks for it.
+    /// Albedo by angle, if it is needed.
     pub(in crate::material) albedo: Option<Arc<AngleTable<Rgb>>>,
-    /// Albedo of facets that absorb nothing, where virtual lights may radiate by the lobe.
+    /// Albedo by angle of facets that absorb nothing, if virtual lights may radiate by the lobe.
     pub(in crate::material) white: Option<Arc<AngleTable<Rgb>>>,
 }
 
@@ -68,7 +65,7 @@ impl RoughLobe {
         self.facets.alpha
     }
 
-    /// Returns true if the lobe is too sharp to pass for diffuse.
+    /// Returns true if the lobe is too sharp to count as diffuse.
     #[inline]
     pub fn is_glossy(&self) -> bool {
         self.facets.alpha < DIFFUSE_ALPHA
@@ -80,6 +77,7 @@ impl RoughLobe {
         self.facets.alpha <= SHARP_ALPHA
     }
 
+    /// See [`super::LobeModel::eval_pdf`].
     #[inline]
     pub(super) fn eval_pdf(&self, scale: Rgb, probability: f32, d: &Directions) -> (Rgb, f32) {
         if !(d.wo.z > 0.0 && d.wi.z > 0.0) {
@@ -92,6 +90,7 @@ impl RoughLobe {
         (value, probability * 0.5 * density * self.facets.v1_exact(cos_o))
     }
 
+    /// See [`super::LobeModel::sample`].
     #[inline]
     pub(super) fn sample(&self, wo: Vec3, u: Vec2) -> Option<Directions> {
         let half = self.facets.sample_visible(wo, u);
@@ -99,6 +98,7 @@ impl RoughLobe {
         (wo.z > 0.0 && wi.z > 0.0).then_some(Directions { wo, wi, half })
     }
 
+    /// See [`super::LobeModel::sampling_weight`].
     #[inline]
     pub(super) fn sampling_weight(&self, scale: Rgb, cos: f32, transmittance: f32) -> f32 {
         match &self.albedo {
@@ -108,19 +108,20 @@ impl RoughLobe {
         }
     }
 
-    /// Albedo for light at the cosine `cos` > 0; where none is tabulated, that of a mirror.
+    /// Returns the albedo for light at the cosine `cos` > 0; that of a mirror if no table was made.
     pub(super) fn mean_reflectance(&self, scale: Rgb, cos: f32) -> Rgb {
         let tabulated = self.albedo.as_ref().map(|table| table.lookup(cos));
         scale * tabulated.unwrap_or_else(|| self.fresnel.reflectance(cos.min(1.0)))
     }
 
+    /// See [`super::LobeModel::diffuse_albedo`].
     #[inline]
     pub(super) fn diffuse_albedo(&self, scale: Rgb, cos: f32) -> Option<Rgb> {
         let table = self.albedo.as_ref().filter(|_| !self.is_glossy())?;
         Some(scale * table.lookup(cos))
     }
 
-    /// Returns true if virtual lights may radiate by the lobe, whatever its factor below 1.
+    /// Returns true if virtual lights may radiate by the lobe, for a factor of 1.
     pub(in crate::material) fn may_radiate(&self) -> bool {
         !self.is_glossy() && luminance(self.fresnel.reflectance(1.0)) > DIFFUSE_REFLECTANCE
     }
@@ -135,6 +136,7 @@ impl RoughLobe {
         (facing > DIFFUSE_REFLECTANCE && peak.is_finite()).then_some(ReflectedLobe { albedo, peak, shape })
     }
 
+    /// See [`super::LobeModel::bound`].
     #[inline]
     pub(super) fn bound(&self, scale: Rgb, bound: &FacetBound) -> Rgb {
         let density = self.facets.max_density(bound.sin_sq);
@@ -146,12 +148,14 @@ impl RoughLobe {
         scale * reflectance * (masked * DirectionBound::WIDER)
     }
 
+    /// See [`super::LobeModel::set_lane`].
     #[inline]
     pub(super) fn set_lane(&self, lanes: &mut LobeLanes, lane: usize, scale: Rgb, wo: Vec3) {
         lanes.scale.set(lane, scale);
         lanes.masking[lane] = self.facets.v1(wo.z.min(1.0));
     }
 
+    /// See [`super::LobeModel::add_value16`].
     #[inline(always)]
     pub(super) fn add_value16(&self, lanes: &LobeLanes, d: &Directions16, sum: &mut Vec3x16) {
         let reflectance = self.fresnel.reflectance16(&d.cos_d);
@@ -164,6 +168,7 @@ impl RoughLobe {
         lanes.add(sum, &reflectance, &masked);
     }
 
+    /// See [`super::LobeModel::add_bound16`].
     #[inline(always)]
     pub(super) fn add_bound16(&self, lanes: &LobeLanes, bounds: &FacetBounds16, sum: &mut Vec3x16) {
         let mut masked = self.facets.max_density16(&bounds.sin_sq);
@@ -186,7 +191,7 @@ impl RoughLobe {
     }
 }
 
-/// Tabulates the largest reflectance at any cosine >= each entry's, so that [`AngleTable::floor`] bounds it.
+/// Tabulates the maximum reflectance at any cosine >= that of each entry, so that [`AngleTable::floor`] is a bound.
 fn max_reflectance_table(fresnel: &Fresnel) -> AngleTable<Rgb> {
     let normal = fresnel.reflectance(1.0);
     AngleTable(std::array::from_fn(|i| {

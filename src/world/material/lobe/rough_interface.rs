@@ -1,8 +1,8 @@
-//! Reflection and refraction by the facets of a rough dielectric interface, two lobes with a factor each.
+//! Reflection and refraction by the facets of a rough dielectric interface: two lobes, each with its factor.
 //!
 //! Paper: Walter et al., *Microfacet Models for Refraction through Rough Surfaces*, 2007, equations 20 and 21.
-//! Deviations: single scattering only. There is no bound: paths and chains follow these lobes whatever their roughness,
-//! as lightcuts gather on one side.
+//! Deviations: single scattering only. There is no bound, because lightcuts gather on one side: eye paths follow these lobes
+//! for any roughness.
 
 use super::interface::Passage;
 use super::{Directions, mean};
@@ -11,22 +11,22 @@ use crate::material::microfacet::Microfacets;
 use base::math::Rgb;
 use glam::{Vec2, Vec3};
 
-/// Least share of the samples that either way on gets: facets may be inclined so that light goes on by it, though on a
-/// smooth interface it would not.
+/// Minimum share of the samples for reflection and for refraction. Inclined facets may reflect or refract light that a
+/// smooth interface would not.
 const MIN_SHARE: f32 = 0.1;
 
-/// Rough interface, of which one of the two ways on is this lobe's.
+/// Rough interface, for either reflection or refraction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(in crate::material) struct RoughInterface {
     pub facets: Microfacets,
     /// Index of refraction behind the normal over that in front; not 1.
     pub eta: f32,
     pub passage: Passage,
-    /// True if it is only for light that comes from behind the normal.
+    /// True if the lobe scatters only light from behind the normal.
     pub inside_only: bool,
 }
 
-/// A direction and the half-way normal, turned to the side of the other direction.
+/// Two directions, turned so that `wo` is on the side of the normal.
 struct Facing {
     wo: Vec3,
     wi: Vec3,
@@ -37,7 +37,7 @@ struct Facing {
 }
 
 impl RoughInterface {
-    /// Index of refraction on the far side over that on the side of `wo`, if light is refracted there.
+    /// Returns the index of refraction on the far side over that on the side of `wo` for refraction; 1 for reflection.
     #[inline]
     pub fn refraction(&self, wo: Vec3) -> f32 {
         match self.passage {
@@ -46,11 +46,13 @@ impl RoughInterface {
         }
     }
 
+    /// Returns the index of refraction on the far side over that on the side of the cosine `cos`.
     #[inline]
     fn eta_from(&self, cos: f32) -> f32 {
         if cos >= 0.0 { self.eta } else { 1.0 / self.eta }
     }
 
+    /// Turns two directions to the side of `wo`; `None` if the lobe scatters nothing there.
     #[inline]
     fn facing(&self, wo: Vec3, wi: Vec3) -> Option<Facing> {
         if wo.z == 0.0 || self.inside_only && wo.z > 0.0 {
@@ -85,7 +87,7 @@ impl RoughInterface {
             true => (reflectance * masked, 0.25 / cos_o),
             false => {
                 let root = cos_o + eta * cos_i;
-                // Radiance changes with the solid angle of a pencil of rays, so that the square of the index drops out.
+                // Refraction scales radiance by the squared index, which cancels the index in the Jacobian.
                 let change = -cos_i / (root * root);
                 ((1.0 - reflectance) * masked * 4.0 * cos_o * change, eta * eta * change)
             }
@@ -122,7 +124,7 @@ impl RoughInterface {
         mean(self.albedo(scale, cos))
     }
 
-    /// Share of the light at `cos` that goes on by the lobe, about.
+    /// Estimates the share of the light at `cos` that the lobe scatters, by a smooth interface.
     #[inline]
     pub fn albedo(&self, scale: Rgb, cos: f32) -> Rgb {
         if cos == 0.0 || self.inside_only && cos > 0.0 {

@@ -1,10 +1,10 @@
-//! Shape of the light that a rough lobe reflects from one direction: all of it as a virtual light needs it.
+//! Directional distribution of the light that a rough lobe reflects from one direction, for virtual lights.
 //!
-//! Intensity in the direction ω for light from ωi is proportional to D(h) V1(ω) cos θ, h halfway between both. Its
-//! greatest value is bounded by that of D and of V1 cos θ = G1 / 2.
+//! The intensity in direction ω for light from ωi is proportional to D(h) V1(ω) cos θ with the half-way normal h. The maxima
+//! of D and of V1 cos θ = G1 / 2 bound it.
 //!
 //! Paper: Walter et al., *Microfacet Models for Refraction through Rough Surfaces*, 2007.
-//! Deviations: the Fresnel reflectance is that of the whole lobe, the same in all directions.
+//! Deviations: the Fresnel reflectance is that of the whole lobe and does not depend on the direction.
 
 use crate::material::microfacet::Microfacets;
 use base::math::{F32x16, LANES, Rgb, Vec3x16};
@@ -15,17 +15,19 @@ use scene::Distribution;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LobeShape {
     facets: Microfacets,
+    /// Inverse of the bound of D · V1 cos θ.
     inv_bound: f32,
 }
 
 impl LobeShape {
+    /// Makes the distribution of a lobe of the given facets.
     pub(super) fn new(facets: Microfacets) -> LobeShape {
         let bound = facets.max_density(0.0) * 0.5 * facets.max_g1(1.0);
         LobeShape { facets, inv_bound: 1.0 / bound }
     }
 
-    /// Share of the bound that leaves in the unit direction `away` where light comes from the unit vector
-    /// `towards_light`, in 0..=1; 0 below the horizon.
+    /// Returns the intensity in the unit direction `away` for light from the unit vector `towards_light`, relative to the
+    /// bound, in 0..=1; 0 below the horizon.
     #[inline]
     pub fn share(&self, normal: Vec3, towards_light: Vec3, away: Vec3) -> f32 {
         let cos = normal.dot(away);
@@ -39,7 +41,7 @@ impl LobeShape {
         (self.facets.density_from(1.0 - cos_sq, cos_sq) * self.facets.v1(cos) * cos * self.inv_bound).min(1.0)
     }
 
-    /// [`LobeShape::share`] in all lanes, of directions that are of unit length or 0.
+    /// Returns [`LobeShape::share`] in all lanes. Directions have unit length or are 0.
     #[inline]
     pub fn share16(&self, normal: Vec3, towards_light: Vec3, away: &Vec3x16) -> F32x16 {
         let (mut sin_sq, mut cos_sq, mut cos) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
@@ -64,15 +66,16 @@ impl LobeShape {
         share
     }
 
-    /// Squared roughness of GGX facets whose density falls no faster with the inclination, relative to its greatest.
+    /// Returns the squared roughness of GGX facets whose density, relative to its maximum, falls no faster with the
+    /// inclination.
     pub fn width_sq(&self) -> f32 {
         self.facets.alpha
             * self.facets.alpha
             * if self.facets.distribution == Distribution::Ggx { 1.0 } else { 2.0 }
     }
 
-    /// Upper bound of the share at a cosine to the mirror direction of the light, for lobes of at most that squared
-    /// width: facets are inclined by at least half the angle.
+    /// Returns an upper bound of the share at a cosine to the mirror direction of the light, for lobes of at most the given
+    /// squared width. Facets are inclined by at least half the angle to the mirror direction.
     #[inline(always)]
     pub fn max_share(cos_mirror: f32, width_sq: f32) -> f32 {
         let sin_sq = 0.5 * (1.0 - cos_mirror);
@@ -81,8 +84,8 @@ impl LobeShape {
         1.0 / (t * t)
     }
 
-    /// The bound in units of the reflected flux per steradian, for light at `cos` of which facets that absorb nothing
-    /// reflect `white`.
+    /// Returns the bound as intensity over reflected flux, 1/sr, for light at `cos`. `white` is the albedo of facets that
+    /// absorb nothing.
     pub(super) fn peak(&self, cos: f32, white: f32) -> f32 {
         self.facets.v1(cos) / (self.inv_bound * white)
     }

@@ -1,0 +1,163 @@
+//! All emitters of a scene.
+
+use super::area::AreaLight;
+use super::environment::EnvironmentLight;
+use super::receivers::Receivers16;
+use super::select::EmitterChoice;
+use super::tree::{EmitterBounds, EmitterObservations, LearnedEmitters};
+use base::math::{F32x16, LANES, U32x16, Vec3x16, mask_of};
+use glam::Vec3;
+use scene::{DeltaLight, Scene};
+
+/// Entry of [`Emitters::light_of_mesh`] for a mesh that does not emit.
+const NO_LIGHT: u32 = u32::MAX;
+
+/// Ratio of radius to distance below which an emitter counts as small.
+const SMALL: f32 = 0.3;
+
+/// Minimum number of emitters for which visibility is learned.
+const MIN_HIDDEN: usize = 8;
+
+/// Maximum number of area lights whose spheres are tested one by one.
+const MAX_TESTED: usize = 32;
+
+/// All emitters of a scene. Their indices count area lights, then delta lights, then the environment.
+#[derive(Clone, Debug)]
+pub struct Emitters {
+    /// Emitting meshes.
+    pub areas: Vec<AreaLight>,
+    /// Point, spot and directional lights.
+    pub deltas: Vec<DeltaLight>,
+    /// The environment with the discs before it; `None` if black.
+    pub environment: Option<EnvironmentLight>,
+    /// Index of the area light of each mesh.
+    light_of_mesh: Vec<u32>,
+    /// Spheres around the emitting meshes: centre and squared radius.
+    spheres: Vec<(Vec3, f32)>,
+    pub(super) choice: EmitterChoice,
+}
+
+impl Emitters {
+    /// Collects the emitters of a scene whose bounds have the given diagonal.
+    pub fn new(scene: &Scene, diagonal: f32) -> Emitters {
+        let areas: Vec<AreaLight> =
+            (0..scene.meshes.len() as u32).filter_map(|i| AreaLight::new(scene, i)).collect();
+        let mut light_of_mesh = vec![NO_LIGHT; scene.meshes.len()];
+        for (i, light) in areas.iter().enumerate() {
+            light_of_mesh[light.mesh as usize] = i as u32;
+        }
+        let environment = EnvironmentLight::new(scene.environment.as_ref(), &scene.discs);
+        let deltas = scene.lights.clone();
+        let extents = [diagonal, scene.extent(diagonal)];
+        let choice = EmitterChoice::new(&areas, &deltas, environment.as_ref(), extents);
+        let sphere = |light: &AreaLight| {
+            let EmitterBounds { low, high, .. } = EmitterBounds::of_area(light);
+            (0.5 * (low + high), 0.25 * (high - low).length_squared())
+        };
+        let spheres = areas.iter().map(sphere).collect();
+        Emitters { spheres, areas, deltas, environment, light_of_mesh, choice }
+    }
+
+    /// Returns true if a mesh emits.
+    #[inline]
+    pub fn is_light(&self, mesh: u32) -> bool {
+        self.light_of_mesh[mesh as usize] != NO_LIGHT
+    }
+
+    /// Returns the area light of a mesh; `None` if it does not emit.
+    #[inline]
+    pub fn area(&self, mesh: u32) -> Option<&AreaLight> {
+        self.areas.get(self.light_of_mesh[mesh as usize] as usize)
+    }
+
+    /// Lists the area lights, each with the centre and squared radius of a sphere around it.
+    pub fn areas_and_spheres(&self) -> impl Iterator<Item = (&AreaLight, (Vec3, f32))> {
+        self.areas.iter().zip(self.spheres.iter().copied())
+    }
+
+    /// Returns true if a ray can hit an emitter.
+    #[inline]
+    pub fn are_hittable(&self) -> bool {
+        !self.areas.is_empty() || self.environment.is_some()
+    }
+
+    /// Returns true if there are several emitters, some of which may contribute more to the image than others.
+    pub fn may_be_uneven(&self) -> bool {
+        self.areas.len() + self.deltas.len() + usize::from(self.environment.is_some()) > 1
+    }
+
+    /// Returns true if there are enough emitters to learn their visibility.
+    pub fn may_hide(&self) -> bool {
+        self.areas.len() + self.deltas.len() >= MIN_HIDDEN
+    }
+
+    /// Learns the visibility of all emitters but the environment; `None` if nearly all are visible from everywhere.
+    pub fn learn_emitters(&self, observations: &EmitterObservations) -> Option<LearnedEmitters> {
+        self.choice.learn(observations)
+    }
+
+    /// Returns the lanes from which all emitters that a ray can hit are so small that BSDF samples of a diffuse surface
+    /// hardly ever hit them.
+    #[inline]
+    pub fn look_small(&self, at: Receivers16) -> u16 {
+        if self.environment.is_some() || self.areas.len() > MAX_TESTED {
+            return 0;
+        }
+        let mut small = [1; LANES];
+        for (centre, radius_sq) in &self.spheres {
+            for i in 0..LANES {
+                let dist_sq = centre.distance_squared(at.position.get(i));
+                small[i] &= u32::from(*radius_sq < SMALL * SMALL * dist_sq);
+            }
+        }
+        mask_of(&small)
+    }
+
+    /// Returns the lanes whose rays, of unit direction, may hit an emitting surface.
+    #[inline]
+    pub fn may_be_met(&self, origin: &Vec3x16, direction: &Vec3x16) -> u16 {
+        if self.areas.len() > MAX_TESTED {
+            return u16::MAX;
+        }
+        let mut met = [0; LANES];
+        for (centre, radius_sq) in &self.spheres {
+            for i in 0..LANES {
+                let to_centre = *centre - origin.get(i);
+                let nearest = direction.get(i) * to_centre.dot(direction.get(i)).max(0.0);
+                // The slack covers rounding, also on the way to distant spheres.
+                let reach_sq = 1.01 * radius_sq + 1e-9 * to_centre.length_squared();
+                met[i] |= u32::from(!(to_centre.distance_squared(nearest) > reach_sq));
+            }
+        }
+        mask_of(&met)
+    }
+
+    /// Returns the densities with which [`Emitters::sample_direct`] at `at` samples points of the meshes `mesh` at
+    /// `distance`. `cos` are the cosines, of either sign, between the normals and the ray. Densities are zero for meshes
+    /// that do not emit.
+    #[inline]
+    pub fn pdf_areas(&self, at: Receivers16, mesh: &U32x16, distance: &F32x16, cos: &F32x16) -> F32x16 {
+        let lights = mesh.map(|mesh| self.light_of_mesh[mesh as usize]);
+        let index = lights.map(|light| if light == NO_LIGHT { 0 } else { light });
+        let lit = mask_of(&lights.map(|light| u32::from(light != NO_LIGHT)));
+        let choice = self.choice.probability(at, &index, lit);
+        std::array::from_fn(|i| {
+            if lights[i] == NO_LIGHT {
+                return 0.0;
+            }
+            let pdf = distance[i] * distance[i] / (self.areas[lights[i] as usize].area * cos[i].abs());
+            if pdf.is_finite() { choice[i] * pdf } else { 0.0 }
+        })
+    }
+
+    /// Returns the probability with which [`Emitters::sample_direct`] at `at` chooses the environment.
+    #[inline]
+    pub fn environment_choice(&self, at: Receivers16) -> F32x16 {
+        self.choice.probability(at, &[self.environment_index(); LANES], u16::MAX)
+    }
+
+    /// Returns the index of the environment.
+    pub(super) fn environment_index(&self) -> u32 {
+        (self.areas.len() + self.deltas.len()) as u32
+    }
+}

@@ -1,0 +1,149 @@
+//! A scene prepared for rendering.
+
+use crate::light::{Emitters, emitted};
+use crate::material::{Bsdf, Materials};
+use crate::meshes::{self, triangle_meshes};
+use crate::relief::Reliefs;
+use crate::specular::Specular;
+use crate::surface::Surface;
+use crate::triangle::Triangles;
+use base::math::{Frame, Rgb};
+use embree::{Accel, BuildQuality, Device, EmbreeError, Hit, Ray, TriangleId};
+use glam::{Vec2, Vec3};
+use scene::Scene;
+
+/// A scene with all tables that methods need.
+pub struct World {
+    /// The scene as loaded.
+    pub scene: Scene,
+    /// Ray queries over its meshes.
+    pub accel: Accel,
+    /// Per-material tables.
+    pub materials: Materials,
+    /// Emitters of light.
+    pub emitters: Emitters,
+    /// Mirrors and glass.
+    pub specular: Specular,
+    /// Diagonal of the bounds of all surfaces, or where these reach very far beyond what is around the camera, a
+    /// thousand times the distance of that; 1 if there are none. Lengths that depend on scale derive from it.
+    pub diagonal: f32,
+    pub(super) triangles: Triangles,
+    /// Reliefs, if there are any.
+    pub(super) reliefs: Option<Reliefs>,
+    /// Surfaces that light passes straight through, if there are any.
+    pub(super) sheets: Option<Accel>,
+}
+
+impl World {
+    /// Builds the world; `threads` is the number of Embree's build threads.
+    pub fn new(scene: Scene, threads: usize) -> Result<World, EmbreeError> {
+        let device = Device::new(threads)?;
+        let materials = Materials::new(&scene);
+        let accel = Accel::build(&device, &triangle_meshes(&scene, &materials))?;
+        let diagonal = match accel.bounds() {
+            Some((low, high)) if high != low => (high - low).length(),
+            _ => 1.0,
+        };
+        let emitters = Emitters::new(&scene, diagonal);
+        let diagonal = scene.extent(diagonal);
+        let specular = Specular::new(&scene, &materials);
+        let triangles = Triangles::new(&scene);
+        let sheets = meshes::sheets(&scene, &materials, &accel)?;
+        let reliefs = Reliefs::new(&scene);
+        Ok(World { scene, accel, materials, emitters, specular, diagonal, triangles, reliefs, sheets })
+    }
+
+    /// Builds the acceleration structure anew, at another quality, for benchmarks.
+    pub fn rebuild(&mut self, quality: BuildQuality) -> Result<(), EmbreeError> {
+        let meshes = triangle_meshes(&self.scene, &self.materials);
+        self.accel = Accel::build_with(self.accel.device(), &meshes, quality)?;
+        Ok(())
+    }
+
+    /// Returns the nearest surface along a ray.
+    #[inline]
+    pub fn intersect(&self, ray: &Ray) -> Option<Surface> {
+        self.accel.closest_hit(ray).map(|hit| self.surface(&hit))
+    }
+
+    /// Returns the surface at a hit.
+    #[inline]
+    pub fn surface(&self, hit: &Hit) -> Surface {
+        let triangle = self.triangles.get(hit.geometry, hit.primitive);
+        let barycentric = Vec2::new(hit.u, hit.v);
+        let mesh = &self.scene.meshes[hit.geometry as usize];
+        let mut frame = Frame::from_normal(triangle.shading_normal(mesh, barycentric));
+        if let Some(reliefs) = &self.reliefs {
+            reliefs.turn(&mut frame, hit.geometry, mesh, triangle, barycentric);
+        }
+        Surface {
+            position: triangle.position(barycentric),
+            normal: triangle.normal,
+            frame,
+            barycentric,
+            mesh: hit.geometry,
+            triangle: hit.primitive,
+            t: hit.t,
+            footprint: Vec3::ZERO,
+        }
+    }
+
+    /// Unit geometric normal of a triangle, on the front by winding.
+    #[inline]
+    pub fn geometric_normal(&self, mesh: u32, triangle: u32) -> Vec3 {
+        self.triangles.get(mesh, triangle).normal
+    }
+
+    /// Corner 0 of a triangle, and its edges from there to corners 1 and 2.
+    #[inline]
+    pub fn corner_and_edges(&self, id: TriangleId) -> (Vec3, [Vec3; 2]) {
+        let triangle = self.triangles.get(id.geometry, id.primitive);
+        (triangle.corner, triangle.edges)
+    }
+
+    /// Returns the BSDF of the surface, textures looked up.
+    #[inline]
+    pub fn bsdf(&self, s: &Surface) -> Bsdf<'_> {
+        let mesh = &self.scene.meshes[s.mesh as usize];
+        let uv = || mesh.uv(&self.triangles.get(s.mesh, s.triangle).vertices, s.barycentric);
+        let covered = || self.covered(s.mesh, s.triangle, s.footprint);
+        self.materials.at_coordinates(mesh.material, uv, covered)
+    }
+
+    /// Radiance the surface emits towards the unit vector `out`.
+    #[inline]
+    pub fn emitted(&self, s: &Surface, out: Vec3) -> Rgb {
+        let mesh = &self.scene.meshes[s.mesh as usize];
+        let Some(emission) = mesh.emission else { return Rgb::ZERO };
+        let factor = |texture| {
+            let uv = mesh.uv(&mesh.triangles[s.triangle as usize], s.barycentric);
+            self.scene.textures.lookup(texture, uv)
+        };
+        emitted(&emission, s.normal, out, factor)
+    }
+
+    /// The albedo that guides denoisers, towards the unit vector `out`: the share of light that `bsdf` reflects, or the
+    /// radiance emitted over the greatest of the surface's mesh, whichever is more, from 0 to 1.
+    #[inline]
+    pub fn guide_albedo(&self, s: &Surface, bsdf: &Bsdf, out: Vec3) -> Rgb {
+        let albedo = bsdf.albedo(s.frame.to_local(out)).min(Rgb::ONE);
+        match self.emitters.area(s.mesh) {
+            Some(light) => albedo.max(light.relative(self.emitted(s, out))),
+            None => albedo,
+        }
+    }
+
+    /// Returns true if some textures are averaged over footprints.
+    #[inline]
+    pub fn filters_textures(&self) -> bool {
+        self.materials.filter_textures()
+    }
+
+    /// Returns the side, in texture coordinates, of a square as large as the area that a cone with the given footprint
+    /// (see [`super::Surface`]) covers of a triangle's plane.
+    #[inline]
+    pub(super) fn covered(&self, mesh: u32, primitive: u32, footprint: Vec3) -> f32 {
+        let triangle = self.triangles.get(mesh, primitive);
+        scene::texture::covered(triangle.uv_scale, triangle.normal, footprint)
+    }
+}
