@@ -47,6 +47,15 @@ impl From<Vec<Texture>> for Textures {
     }
 }
 
+impl<'a> IntoIterator for &'a Textures {
+    type Item = &'a Texture;
+    type IntoIter = std::slice::Iter<'a, Texture>;
+
+    fn into_iter(self) -> Self::IntoIter {
+        self.0.iter()
+    }
+}
+
 impl Deref for Textures {
     type Target = [Texture];
 
