@@ -1,9 +1,9 @@
-//! A scene prepared for rendering: acceleration structure, material tables and emitters beside the data.
+//! A scene prepared for rendering: the scene itself, its acceleration structure, material tables and emitters.
 //!
-//! [`material`] tells how surfaces scatter, [`light`] what emits, [`shadow`] whether segments are free; [`view`] is a
-//! camera and the part of its film to render.
+//! [`material`] is scattering at surfaces, [`light`] emission, [`shadow`] visibility between points, and [`view`] a
+//! camera and the part of its film to render. A [`World`] is immutable and shared by all threads.
 //!
-//! Units: positions relative to the scene's centre. A `World` is immutable and shared by all threads.
+//! Units: positions are relative to the scene's centre.
 
 #![forbid(unsafe_code)]
 

@@ -15,7 +15,11 @@ pub fn triangle_meshes<'a>(scene: &'a Scene, materials: &Materials) -> Vec<Trian
     meshes.collect()
 }
 
-/// The sheets of a scene beside the structure `whole` over all its meshes; `None` if there are none.
+/// Builds the structure over the surfaces that light passes straight through; `None` if there are none. `whole` is the
+/// structure over all meshes.
+///
+/// # Errors
+/// If Embree cannot build the structure.
 pub(super) fn sheets(
     scene: &Scene,
     materials: &Materials,
@@ -25,7 +29,7 @@ pub(super) fn sheets(
     if meshes.iter().all(|mesh| mesh.occludes) {
         return Ok(None);
     }
-    // Meshes keep their numbers.
+    // Emptied meshes keep the numbers of the others the same.
     meshes.iter_mut().filter(|mesh| mesh.occludes).for_each(|mesh| mesh.triangles = &[]);
     Accel::build(whole.device(), &meshes).map(Some)
 }

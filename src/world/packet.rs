@@ -7,7 +7,7 @@ use base::math::{Cone, F32x16, Frame, LANES, U32x16, Vec2x16, Vec3x16, lanes_in}
 use embree::Hits16;
 use glam::Vec2;
 
-/// Surfaces hit by sixteen rays; see [`Surface`] for the members.
+/// Surfaces hit by sixteen rays; see [`Surface`] for the fields.
 #[derive(Clone, Debug, Default)]
 pub struct Surfaces16 {
     /// Positions.
@@ -22,18 +22,18 @@ pub struct Surfaces16 {
     pub shading_normal: Vec3x16,
     /// Barycentric weights of corners 1 and 2.
     pub barycentric: Vec2x16,
-    /// Mesh indices.
+    /// Indices of the meshes.
     pub mesh: U32x16,
-    /// Triangles of those meshes.
+    /// Indices of the triangles in the meshes.
     pub triangle: U32x16,
     /// Distances along the rays.
     pub t: F32x16,
-    /// Vectors along the rays as long as the cones around them are wide.
+    /// Vectors along the rays, as long as the cones around the rays are wide.
     pub footprint: Vec3x16,
 }
 
 impl Surfaces16 {
-    /// The shading frame of a lane.
+    /// Returns the shading frame of a lane.
     #[inline(always)]
     pub fn frame(&self, lane: usize) -> Frame {
         Frame {
@@ -43,7 +43,7 @@ impl Surfaces16 {
         }
     }
 
-    /// The surface of a lane.
+    /// Returns the surface of a lane.
     #[inline]
     pub fn get(&self, lane: usize) -> Surface {
         Surface {
@@ -101,8 +101,8 @@ impl World {
         s
     }
 
-    /// Sets the footprints of rays along `direction` that hit `surfaces`, in the lanes of `hit`. `cone` returns the cone
-    /// around a lane's ray.
+    /// Sets the footprints of rays along `direction` that hit `surfaces`, in the lanes of `hit`. `cone` returns the
+    /// cone around a lane's ray.
     #[inline]
     pub fn cover(
         &self,
@@ -119,7 +119,7 @@ impl World {
         }
     }
 
-    /// Returns the BSDFs of the surfaces, seen from `wo` in their shading frames, textures looked up.
+    /// Returns the BSDFs of the surfaces at their texture coordinates, seen from `wo` in their shading frames.
     #[inline]
     pub fn bsdfs(&self, s: &Surfaces16, wo: Vec3x16) -> Bsdfs16<'_> {
         let at = self.textured(s);
@@ -131,15 +131,15 @@ impl World {
         })
     }
 
-    /// Texture coordinates in a lane.
+    /// Returns the texture coordinates in a lane.
     #[inline]
     fn coordinates(&self, s: &Surfaces16, lane: usize) -> Vec2 {
         let vertices = &self.triangles.get(s.mesh[lane], s.triangle[lane]).vertices;
         self.scene.meshes[s.mesh[lane] as usize].uv(vertices, s.barycentric.get(lane))
     }
 
-    /// Texture coordinates of the surfaces that are textured. Some of their texels are read here, so that the lanes
-    /// wait for memory together.
+    /// Returns the texture coordinates of the surfaces that are textured. It also reads some of their texels, so that
+    /// the lanes wait for memory together.
     #[inline]
     fn textured(&self, s: &Surfaces16) -> [Option<Vec2>; LANES] {
         let (mut at, mut squares) = ([None; LANES], [None; LANES]);
@@ -151,7 +151,7 @@ impl World {
                 squares[i] = Some((&texture.texels, texture.square(uv)));
             }
         }
-        // In a loop of its own, which is short enough for the processor to look ahead over all lanes.
+        // This loop is short enough for the processor to look ahead over all lanes.
         let read = squares.iter().flatten().fold(0, |read, (texels, square)| read ^ texels.peek(*square));
         std::hint::black_box(read);
         at

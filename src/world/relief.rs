@@ -1,9 +1,9 @@
-//! Shading frames on surfaces with a relief, and on those whose material knows a direction.
+//! Shading frames on surfaces with a relief or with an anisotropic material.
 //!
 //! Paper: J. F. Blinn, *Simulation of Wrinkled Surfaces*, 1978, for heights; definitions are those of Mitsuba 3's
 //! `bumpmap` and `normalmap`.
-//! Deviations: the relief changes shading alone, neither the outline nor shadows; where a turned normal faces away from
-//! the eye, a two-sided surface is shaded as seen from behind.
+//! Deviations: the relief changes shading alone, neither outlines nor shadows. A two-sided surface is shaded as seen
+//! from behind if its turned normal faces away from the eye.
 
 use super::triangle::Triangle;
 use base::math::Frame;
@@ -17,16 +17,16 @@ pub(super) struct Reliefs {
     textures: Textures,
 }
 
-/// How the shading frames of a mesh differ from those of the interpolated normals.
+/// Difference between the shading frames of a mesh and those of the interpolated normals.
 #[derive(Clone, Copy, Default, PartialEq)]
 struct Turn {
     relief: Option<Relief>,
-    /// Angle from u along which x is, if it is known.
+    /// Angle from u to the x axis, in radians, if the material is anisotropic.
     from_u: Option<f32>,
 }
 
 impl Reliefs {
-    /// Collects them; `None` if there are none.
+    /// Collects the reliefs and directions of a scene; `None` if there are none.
     pub fn new(scene: &Scene) -> Option<Reliefs> {
         let of = |mesh: &Mesh| {
             let material = scene.materials.get(mesh.material.0 as usize);
@@ -40,8 +40,8 @@ impl Reliefs {
         any.then(|| Reliefs { turns, textures: scene.textures.clone() })
     }
 
-    /// Turns the shading frame at barycentric weights `b` of a triangle by the relief of its mesh, whose number is `index`,
-    /// and turns x to the direction that its material asks for.
+    /// Turns the shading frame at barycentric weights `b` of a triangle by the relief of its mesh, whose number is
+    /// `index`, and turns x to the direction that its material asks for.
     #[inline]
     pub fn turn(&self, frame: &mut Frame, index: u32, mesh: &Mesh, triangle: &Triangle, b: Vec2) {
         let Turn { relief, from_u } = &self.turns[index as usize];
@@ -62,8 +62,8 @@ impl Reliefs {
         }
     }
 
-    /// Returns the normal of a relief on a surface of shading normal `normal`, not of unit length; `None` if its texture is
-    /// missing.
+    /// Returns the normal of a relief on a surface of shading normal `normal`, not of unit length; `None` if its
+    /// texture is missing.
     #[inline(never)]
     fn normal(
         &self,
@@ -93,7 +93,7 @@ impl Reliefs {
     }
 }
 
-/// Derivatives of the position by u and v, on the plane of a triangle.
+/// Returns the derivatives of the position by u and v, on the plane of a triangle.
 fn derivatives(mesh: &Mesh, triangle: &Triangle) -> [Vec3; 2] {
     let (edges, corner) = (triangle.edges, |b: Vec2| mesh.uv(&triangle.vertices, b));
     let origin = corner(Vec2::ZERO);

@@ -1,8 +1,8 @@
-//! Sheets: surfaces that light passes straight through, such as thin panes and those with gaps, and that shadow rays
-//! pass with it.
+//! Sheets: surfaces that light passes straight through, such as thin panes and surfaces with gaps. Shadow rays pass
+//! them, too.
 //!
-//! Queries for occlusion leave sheets out; the light of segments found free takes the colour of the sheets that they
-//! cross, each of them once, all found in one traversal.
+//! Occlusion queries leave sheets out. The transmittance of all sheets that a free segment crosses is a factor on its
+//! light; one traversal finds them all.
 
 use super::World;
 use crate::material::LastStraight;
@@ -10,20 +10,20 @@ use base::math::{Rgb, lanes_in};
 use embree::{Hit, Ray, Rays16};
 use glam::{Vec2, Vec3};
 
-/// Maximum number of sheets that a segment crosses; it is blocked by more.
+/// Maximum number of sheets that light passes along a segment.
 const MAX_CROSSED: usize = 64;
 
-/// Number of them that are kept without an allocation.
+/// Number of sheets on a segment that are stored without an allocation.
 const FEW_CROSSED: usize = 8;
 
-/// Distance by which a ray goes on behind a sheet, in units of the last place of the largest coordinate: that by which
-/// rays start off their surfaces.
+/// Offset behind a sheet at which a ray continues, in units of the last place of the largest coordinate.
 const ULPS: f32 = 8.0;
 
-/// Cosine below which that distance grows no more.
+/// Cosine below which the offset does not grow any more.
 const MIN_COS: f32 = 0.01;
 
-/// The rest of a ray behind the surface point `position` on it, of parameter `t` and geometric normal `normal`.
+/// Returns the rest of a ray behind the surface point `position` on it, which has the ray parameter `t` and the
+/// geometric normal `normal`.
 #[inline]
 pub fn beyond(ray: &Ray, position: Vec3, normal: Vec3, t: f32) -> Ray {
     let length = ray.direction.length();
@@ -39,21 +39,22 @@ struct Crossing {
     share: Rgb,
 }
 
-/// The sheets on a segment.
+/// All sheets on a segment.
 struct Crossed {
     few: [Crossing; FEW_CROSSED],
     count: usize,
-    /// All of them if they are more than few, else empty.
+    /// All sheets, if `few` is too small; else empty.
     many: Vec<Crossing>,
 }
 
 impl Crossed {
+    /// Makes the empty list.
     fn new() -> Crossed {
         let hit = Hit { t: 0.0, u: 0.0, v: 0.0, geometry: 0, primitive: 0 };
         Crossed { few: [Crossing { hit, share: Rgb::ONE }; FEW_CROSSED], count: 0, many: Vec::new() }
     }
 
-    /// Adds one; false if no light passes, or there are too many.
+    /// Adds a sheet. Returns false if no light passes it, or there are too many.
     #[inline]
     fn add(&mut self, crossing: Crossing) -> bool {
         if self.count == MAX_CROSSED || crossing.share == Rgb::ZERO {
@@ -72,11 +73,13 @@ impl Crossed {
         true
     }
 
+    /// Returns all sheets.
     fn all(&mut self) -> &mut [Crossing] {
         if self.many.is_empty() { &mut self.few[..self.count] } else { &mut self.many }
     }
 
-    /// Share of the light that passes all of them; of those that lie within rounding of one another, the first.
+    /// Returns the share of the light that passes all sheets. Sheets closer to each other than rounding count as one,
+    /// the first.
     fn transmittance(&mut self, world: &World, segment: &Ray) -> Rgb {
         let crossings = self.all();
         crossings.sort_unstable_by(|a, b| a.hit.t.total_cmp(&b.hit.t));
@@ -103,7 +106,7 @@ impl World {
         self.sheets.is_some()
     }
 
-    /// Share of the light that comes along a segment on which nothing occludes it.
+    /// Returns the share of the light that passes the sheets on a segment that is not occluded.
     pub fn transmittance(&self, segment: &Ray) -> Rgb {
         let Some(sheets) = &self.sheets else { return Rgb::ONE };
         let out = -segment.direction.normalize();
@@ -115,7 +118,7 @@ impl World {
         if is_free { crossed.transmittance(self, segment) } else { Rgb::ZERO }
     }
 
-    /// Share of the light towards the unit vector `out` that passes the sheet at a hit.
+    /// Returns the share of the light towards the unit vector `out` that passes the sheet at a hit.
     #[inline]
     fn share_passing(&self, hit: &Hit, out: Vec3, last: &mut Option<LastStraight>) -> Rgb {
         let mesh = &self.scene.meshes[hit.geometry as usize];
@@ -129,14 +132,14 @@ impl World {
         self.materials.straight_transmittance(mesh.material, cos, uv, last)
     }
 
-    /// Parameter from which a segment goes on behind the sheet at a hit.
+    /// Returns the parameter at which a segment continues behind the sheet at a hit.
     fn behind(&self, segment: &Ray, hit: &Hit) -> f32 {
         let triangle = self.triangles.get(hit.geometry, hit.primitive);
         let position = triangle.position(Vec2::new(hit.u, hit.v));
         beyond(segment, position, triangle.normal, hit.t).t_near
     }
 
-    /// Calls `through` with the lanes of `lanes` whose segments cross sheets and [`World::transmittance`] there.
+    /// Calls `through` with each lane of `lanes` and its [`World::transmittance`], if there are sheets.
     #[inline]
     pub fn transmittance16(&self, segments: &Rays16, lanes: u16, mut through: impl FnMut(usize, Rgb)) {
         if self.has_sheets() {

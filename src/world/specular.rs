@@ -1,5 +1,5 @@
-//! Surfaces with specular lobes: delta lobes, of mirrors and glass, and those too sharp to pass for diffuse. Straight
-//! segments between surfaces and virtual lights do not carry the light that these send on.
+//! Surfaces with specular lobes: delta lobes of mirrors and glass, and lobes too sharp to count as diffuse. Their light
+//! does not travel along straight segments between surfaces and virtual lights.
 
 use super::towards::{Boxes16, Faces, MIN_DIRECTION};
 use crate::material::{Bsdf, Materials};
@@ -14,22 +14,22 @@ const MAX_BOXES: usize = LANES;
 /// The specular surfaces of a scene.
 #[derive(Clone, Debug, Default)]
 pub struct Specular {
-    /// True of meshes that have such lobes, delta lobes by which light passes straight among them.
+    /// True for meshes with specular lobes, lobes that light passes straight included; empty if there are none.
     pub(super) meshes: Vec<bool>,
-    /// Boxes around meshes that have others, as lowest and highest corners.
+    /// Boxes around meshes with lobes that change the direction of light, as lowest and highest corners.
     pub(super) boxes: Vec<(Vec3, Vec3)>,
-    /// Boxes around those of them that have delta lobes, or are of rough glass.
+    /// Boxes around meshes with delta lobes or of rough glass.
     pub(super) delta_boxes: Boxes16,
-    /// True if there are any.
+    /// True if there are delta lobes or rough glass.
     pub(super) has_delta_lobes: bool,
-    /// True if any scatter light to their other side in more than isolated directions.
+    /// True if a surface scatters light to its other side in more than isolated directions.
     pub(super) scatter_across: bool,
 }
 
 impl Specular {
-    /// Finds them.
+    /// Collects the specular surfaces of a scene.
     pub fn new(scene: &Scene, materials: &Materials) -> Specular {
-        // By material, since a mean is taken over all texels.
+        // Each material is evaluated once for all its meshes.
         let averages: Vec<Bsdf> = materials.averages().collect();
         let average = |mesh: &Mesh| &averages[mesh.material.0 as usize];
         let by_delta = |mesh: &Mesh| average(mesh).bends_light();
@@ -56,18 +56,18 @@ impl Specular {
         }
     }
 
-    /// Returns true if any scatters light to its other side in more than isolated directions.
+    /// Returns true if a surface scatters light to its other side in more than isolated directions.
     #[inline]
     pub fn scatter_across(&self) -> bool {
         self.scatter_across
     }
 
-    /// Returns true if any bends light by delta lobes, or is of rough glass.
+    /// Returns true if a surface bends light by delta lobes or is of rough glass.
     pub fn has_delta_lobes(&self) -> bool {
         self.has_delta_lobes
     }
 
-    /// Returns true if any bends light.
+    /// Returns true if a surface changes the direction of light by specular lobes.
     #[inline]
     pub fn bends_light(&self) -> bool {
         !self.boxes.is_empty()
@@ -78,13 +78,13 @@ impl Specular {
         self.delta_boxes.faces(x, n)
     }
 
-    /// Returns true if a ray may meet a surface that has delta lobes, or is of rough glass.
+    /// Returns true if a ray may hit a surface that has delta lobes or is of rough glass.
     #[inline]
     pub fn may_meet_delta_lobes(&self, ray: &Ray) -> bool {
         self.delta_boxes.may_be_met(ray)
     }
 
-    /// Lanes whose meshes are specular.
+    /// Returns the lanes whose meshes are specular.
     #[inline]
     pub fn lanes(&self, mesh: &U32x16) -> u16 {
         match self.meshes[..] {
@@ -93,7 +93,7 @@ impl Specular {
         }
     }
 
-    /// Lanes whose rays may meet one that bends light.
+    /// Returns the lanes whose rays may hit a surface that changes the direction of light by specular lobes.
     #[inline]
     pub fn may_be_met(&self, origin: &Vec3x16, direction: &Vec3x16) -> u16 {
         let mut met = [0; LANES];
@@ -115,7 +115,7 @@ impl Specular {
     }
 }
 
-/// Box around a mesh, a little larger than it, for rounding.
+/// Returns the box around a mesh, enlarged to cover rounding.
 fn bounds(mesh: &Mesh) -> (Vec3, Vec3) {
     let corners = mesh.triangles.iter().flatten().filter_map(|i| mesh.positions.get(*i as usize));
     let whole = (Vec3::INFINITY, Vec3::NEG_INFINITY);
@@ -124,23 +124,23 @@ fn bounds(mesh: &Mesh) -> (Vec3, Vec3) {
     (low - slack, high + slack)
 }
 
-/// Joins boxes to at most `count` of neighbours: halves of their list along the longest axis, over and over.
-fn group(mut boxes: Vec<(Vec3, Vec3)>, count: usize, found: &mut Vec<(Vec3, Vec3)>) {
+/// Joins boxes to at most `count` boxes of neighbours: the list is halved along its longest axis, again and again.
+fn group(mut boxes: Vec<(Vec3, Vec3)>, count: usize, joined: &mut Vec<(Vec3, Vec3)>) {
     if boxes.len() <= count {
-        found.append(&mut boxes);
+        joined.append(&mut boxes);
         return;
     }
     let join = |a: (Vec3, Vec3), b: &(Vec3, Vec3)| (a.0.min(b.0), a.1.max(b.1));
     let all = boxes[1..].iter().fold(boxes[0], join);
     if count == 1 {
-        found.push(all);
+        joined.push(all);
         return;
     }
     let axis = (all.1 - all.0).max_position();
     boxes.sort_by(|a, b| (a.0 + a.1)[axis].total_cmp(&(b.0 + b.1)[axis]));
     let rest = boxes.split_off(boxes.len() / 2);
-    group(boxes, count / 2, found);
-    group(rest, count - count / 2, found);
+    group(boxes, count / 2, joined);
+    group(rest, count - count / 2, joined);
 }
 
 #[cfg(test)]

@@ -13,8 +13,8 @@ use scene::{
 };
 use std::ops::{Deref, DerefMut};
 
-/// Returns a pinhole camera at `origin` that looks at `target`. `tan_half_x` is the tangent of half the horizontal field
-/// of view.
+/// Returns a pinhole camera at `origin` that looks at `target`. `tan_half_x` is the tangent of half the horizontal
+/// field of view.
 pub fn camera(origin: Vec3, target: Vec3, tan_half_x: f32) -> Camera {
     let forward = (target - origin).normalize();
     let helper = if forward.y.abs() > 0.9 { Vec3::Z } else { Vec3::Y };
@@ -192,8 +192,8 @@ pub fn room(low: Vec3, high: Vec3, material: MaterialId) -> Vec<Mesh> {
     ]
 }
 
-/// Returns a diffuse room from -1 to 1 with an area light below its ceiling, and the material of the walls. The film has
-/// `size` × `size` pixels.
+/// Returns a diffuse room from -1 to 1 with an area light below its ceiling, and the material of the walls. The film
+/// has `size` × `size` pixels.
 pub fn lit_room(camera: Camera, size: u32) -> (SceneAndView, MaterialId) {
     let mut scene = scene(camera, [size, size]);
     let wall = add_material(&mut scene, diffuse(Rgb::new(0.7, 0.6, 0.5)));

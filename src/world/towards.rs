@@ -1,9 +1,10 @@
-//! Directions drawn towards the boxes around mirrors and glass, with their densities.
+//! Sampling of directions towards the boxes around mirrors and glass.
 //!
-//! A front face of a box, seen from the point, is chosen by its solid angle, about, and a point on it evenly. A ray
-//! enters a box by one front face, so that the density of a direction needs no rays.
+//! A front face of a box, as seen from the point, is chosen by its approximate solid angle, and a point on it
+//! uniformly. A ray enters a box through one front face, so that the density of a direction follows without tracing
+//! rays.
 //!
-//! Units: densities are by solid angle.
+//! Units: densities are per solid angle.
 
 use base::math::{F32x16, LANES, Vec3x16};
 use embree::Ray;
@@ -12,10 +13,10 @@ use glam::{Vec2, Vec3};
 /// Coordinate of a direction that replaces smaller ones, 0 among them.
 pub(super) const MIN_DIRECTION: f32 = 1e-20;
 
-/// Least cosine that counts for a face: its centre may be below a horizon that the face rises above.
+/// Minimum cosine in the weight of a face, whose centre may lie below the horizon while a part lies above.
 const MIN_COS: f32 = 0.1;
 
-/// Up to sixteen boxes; those of no extent count for nothing.
+/// Up to sixteen boxes. Boxes without extent are ignored.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Boxes16 {
     low: Vec3x16,
@@ -26,15 +27,16 @@ pub(super) struct Boxes16 {
 pub struct Faces<'a> {
     boxes: &'a Boxes16,
     x: Vec3,
-    /// By axis: coordinates of the planes of the faces across it.
+    /// Coordinates of the planes of the faces, by axis.
     at: [F32x16; 3],
-    /// Solid angles, about, times the cosines at the point; 0 of faces that are not in front.
+    /// Approximate solid angles times the cosines at the point; 0 for faces that are not front faces.
     weights: [F32x16; 3],
+    /// Sum of the weights.
     total: f32,
 }
 
 impl Boxes16 {
-    /// Of lowest and highest corners, the first sixteen.
+    /// Collects the first sixteen boxes, given as lowest and highest corners.
     pub fn new(corners: &[(Vec3, Vec3)]) -> Boxes16 {
         let mut boxes = Boxes16::default();
         for (lane, (low, high)) in corners.iter().take(LANES).enumerate() {
@@ -44,13 +46,14 @@ impl Boxes16 {
         boxes
     }
 
+    /// Returns the lowest and the highest corner of a box.
     fn corners(&self, lane: usize) -> (Vec3, Vec3) {
         (self.low.get(lane), self.high.get(lane))
     }
 }
 
 impl Boxes16 {
-    /// Front faces seen from `x`, where the normal is `n`.
+    /// Returns the front faces seen from `x`, where the normal is `n`.
     pub fn faces(&self, x: Vec3, n: Vec3) -> Faces<'_> {
         let (low, high) = (self.low.rows(), self.high.rows());
         let (mut centre, mut half, mut height) = ([[0.0; LANES]; 3], [[0.0; LANES]; 3], [0.0; LANES]);
@@ -88,7 +91,7 @@ impl Boxes16 {
         faces.total = totals.iter().sum();
         faces
     }
-    /// Returns true if a ray may meet a surface that has delta lobes, or is of rough glass.
+    /// Returns true if a ray hits a box.
     #[inline]
     pub fn may_be_met(&self, ray: &Ray) -> bool {
         let (low, high) = (self.low.rows(), self.high.rows());
@@ -111,7 +114,7 @@ impl Boxes16 {
 }
 
 impl Faces<'_> {
-    /// Draws a direction; `None` where no box is in front.
+    /// Samples a direction; `None` if there is no front face.
     pub fn towards(&self, u_face: f32, u: Vec2) -> Option<Vec3> {
         let (mut left, mut chosen) = (u_face * self.total, None);
         for (i, weight) in self.weights.iter().flatten().enumerate().filter(|(_, weight)| **weight > 0.0) {
@@ -130,7 +133,8 @@ impl Faces<'_> {
         (point - self.x).try_normalize()
     }
 
-    /// Density with which [`Faces::towards`] draws the unit vector `direction`; `None` where it draws none.
+    /// Returns the density with which [`Faces::towards`] samples the unit vector `direction`; `None` if there is no
+    /// front face.
     pub fn density(&self, direction: Vec3) -> Option<f32> {
         let (low, high) = (self.boxes.low.rows(), self.boxes.high.rows());
         let mut density = [0.0; LANES];

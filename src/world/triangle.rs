@@ -1,7 +1,7 @@
-//! Triangles in the layout of a hit: all data of a point on one, in one cache line.
+//! Triangles laid out for hits: all data of a triangle in one cache line.
 //!
-//! Deviations: this repeats the meshes' positions, 64 bytes a triangle. Following a triangle's indices to its
-//! corners instead waits for memory twice, and up to four times.
+//! The layout repeats the meshes' positions and takes 64 bytes per triangle. Following the indices of a triangle to its
+//! corners would wait for memory two to four times.
 
 use glam::{Vec2, Vec3};
 use scene::texture::uv_scale;
@@ -9,7 +9,7 @@ use scene::{Mesh, Scene};
 
 /// The triangles of all meshes.
 pub(super) struct Triangles {
-    /// Index of each mesh's first record.
+    /// Index of the first record of each mesh.
     first: Vec<usize>,
     records: Vec<Triangle>,
 }
@@ -24,13 +24,14 @@ pub(super) struct Triangle {
     pub edges: [Vec3; 2],
     /// Unit geometric normal, on the front by winding.
     pub normal: Vec3,
-    /// The corners' indices in the mesh.
+    /// Indices of the corners in the mesh.
     pub vertices: [u32; 3],
-    /// Length by texture coordinates of what is one unit long, in the mean of all directions; 0 where there are none.
+    /// Length in texture coordinates of one unit of length (see [`uv_scale`]); 0 if the mesh has no coordinates.
     pub uv_scale: f32,
 }
 
 impl Triangles {
+    /// Collects the triangles of a scene.
     pub fn new(scene: &Scene) -> Triangles {
         let mut first = Vec::with_capacity(scene.meshes.len());
         let mut records = Vec::with_capacity(scene.triangle_count());
@@ -57,8 +58,8 @@ impl Triangles {
 }
 
 impl Triangle {
-    /// Returns the unit interpolated normal at barycentric weights `b` of corners 1 and 2; the triangle's own normal if the
-    /// mesh has none or they cancel.
+    /// Returns the unit interpolated normal at barycentric weights `b` of corners 1 and 2; the triangle's own normal if
+    /// the mesh has none or they cancel.
     #[inline]
     pub fn shading_normal(&self, mesh: &Mesh, b: Vec2) -> Vec3 {
         match mesh.normal(&self.vertices, b) {
@@ -80,8 +81,7 @@ pub(super) fn position(corner: Vec3, edges: [Vec3; 2], b: Vec2) -> Vec3 {
     corner + (edges[0] * b.x + edges[1] * b.y)
 }
 
-/// Returns the unit normal of a triangle from two edges, scaled first so that tiny triangles do not
-/// underflow.
+/// Returns the unit normal of a triangle from two edges. Very small and very large edges are scaled first.
 fn unit_normal([e1, e2]: [Vec3; 2]) -> Vec3 {
     let cross = e1.cross(e2);
     let length_sq = cross.length_squared();

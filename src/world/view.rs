@@ -1,7 +1,7 @@
-//! The view of a scene: from where it is seen, and which part of the film is rendered.
+//! The view of a scene: its camera, and the part of the film to render.
 //!
-//! Every method takes a view beside the world; nothing in a [`crate::World`] depends on it, so that one
-//! world, its lights and its cache records serve any number of views.
+//! Nothing in a [`crate::World`] depends on the view, so that one world, its lights and its cache records serve any
+//! number of views.
 
 use base::film::{CameraMatrices, Window};
 use base::math::Cone;
@@ -10,10 +10,10 @@ use embree::Ray;
 use glam::{DVec3, Vec2, Vec3};
 use scene::{Camera, Cameras, Projection};
 
-/// Maximum number of pixels rendered at once: 16384 by 65536. More would exhaust the memory of most machines.
+/// Maximum number of pixels rendered at once (16384 × 65536), which bounds the memory.
 const MAX_PIXELS: u64 = 1 << 30;
 
-/// Seed of places on the lens over that of the samples.
+/// Seed of points on the lens, combined with that of the samples.
 const LENS_SEED: u32 = 0x1e45_0f0c;
 
 /// A camera and the part of its film to render.
@@ -21,32 +21,32 @@ const LENS_SEED: u32 = 0x1e45_0f0c;
 pub struct View {
     /// The camera.
     pub camera: Camera,
-    /// The film and the rectangle of it that is rendered.
+    /// Film, and the rectangle of it that is rendered.
     pub window: Window,
 }
 
-/// Frame, film size and crop that are wanted in place of the scene file's own.
+/// Frame, film size and crop that replace those of the scene file.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Framing {
-    /// Frame of the camera path, counted from 1, in place of the still camera.
+    /// Frame of the camera path, counted from 1, which replaces the still camera.
     pub frame: Option<usize>,
     /// Width and height of the film in pixels.
     pub resolution: Option<[u32; 2]>,
-    /// The only part of the film to render, as offset and size in pixels.
+    /// Part of the film to render, as offset and size in pixels.
     pub crop: Option<[[u32; 2]; 2]>,
 }
 
-/// Reason why a framing gives no view.
+/// Error of a framing.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum FramingError {
-    /// The camera path is not that long.
+    /// The camera path is shorter than the frame's number.
     #[error("frame {frame}: {}", match frames {
         0 => "the scene has no camera path, only a still camera; give a TOML scene keys in [camera.path], or a glTF \
               model an animated camera".to_owned(),
         _ => format!("the scene's camera path has {frames} frames, counted from 1"),
     })]
     Frame {
-        /// The frame wanted.
+        /// Requested frame.
         frame: usize,
         /// Length of the camera path.
         frames: usize,
@@ -57,20 +57,23 @@ pub enum FramingError {
         /// Width and height of the film.
         film: [u32; 2],
     },
-    /// The film has too many pixels to be rendered at once.
+    /// The window has too many pixels.
     #[error("{pixels} pixels are more than {MAX_PIXELS}: render the film in parts with --crop")]
     Pixels {
-        /// Pixels in the window.
+        /// Number of pixels in the window.
         pixels: u64,
     },
 }
 
 impl View {
-    /// The view that `framing` wants through the cameras of a scene file.
+    /// Returns the view through the cameras of a scene file, as `framing` changes it.
+    ///
+    /// # Errors
+    /// If the frame is not in the camera path, the crop is not on the film, or the window has too many pixels.
     pub fn new(cameras: &Cameras, framing: &Framing) -> Result<View, FramingError> {
         let film = framing.resolution.unwrap_or(cameras.resolution);
         let mut window = Window::whole(film);
-        // The file's crop is one of the file's film.
+        // The file's crop applies to the file's film only.
         let crop = framing.crop.or(cameras.crop.filter(|_| framing.resolution.is_none()));
         if let Some([offset, [width, height]]) = crop {
             window = Window { film, offset, width, height };
@@ -93,19 +96,19 @@ impl View {
         Ok(View { camera, window })
     }
 
-    /// The whole film of `resolution` pixels, seen by `camera`.
+    /// Returns the view of the complete film of `resolution` pixels.
     pub fn whole(camera: Camera, resolution: [u32; 2]) -> View {
         View { camera, window: Window::whole(resolution) }
     }
 
-    /// The ray through the film's pixel `[x, y]` at the place around it that its filter gives `jitter`, from the
-    /// camera's near to its far plane, through the middle of a lens.
+    /// Returns the ray through the film's pixel `[x, y]`, from the camera's near plane to its far plane, through the
+    /// middle of the lens. The pixel filter maps `jitter` to a point around the pixel.
     #[inline]
     pub fn primary_ray(&self, pixel: [u32; 2], jitter: Vec2) -> Ray {
         self.ray(pixel, jitter, Vec2::splat(0.5))
     }
 
-    /// The same for sample `sample` of the pixel's, which a lens, if there is one, sends through a place of its own.
+    /// Returns the ray of a sample of the pixel (see [`View::primary_ray`]), through a sampled point of the lens.
     #[inline]
     pub fn sample_ray(&self, pixel: [u32; 2], jitter: Vec2, seed: u32, sample: u32) -> Ray {
         let lens = match self.camera.projection {
@@ -118,6 +121,7 @@ impl View {
         self.ray(pixel, jitter, lens)
     }
 
+    /// Returns the ray through a pixel and a point of the lens.
     #[inline]
     fn ray(&self, [x, y]: [u32; 2], jitter: Vec2, lens: Vec2) -> Ray {
         let camera = &self.camera;
@@ -128,13 +132,13 @@ impl View {
         Ray { origin, t_near: camera.near / cos, direction, t_far: camera.far / cos }
     }
 
-    /// Matrices to the camera and the film from the coordinates of the scene's file, which has the scene's `centre`
-    /// there and its `unit` of length.
+    /// Returns the matrices to camera and film from the coordinates of the scene's file, where `centre` is the scene's
+    /// centre and `unit` the local unit of length.
     pub fn matrices(&self, centre: DVec3, unit: f64) -> CameraMatrices {
         let camera = &self.camera;
         let origin = centre + camera.origin.as_dvec3() * unit;
         let axes = [camera.right, camera.up, camera.forward].map(Vec3::as_dvec3);
-        // Rows: images of the world's axes and of its origin.
+        // The rows are the images of the world's axes and of its origin.
         let basis = [DVec3::X, DVec3::Y, DVec3::Z, -origin].map(|v| axes.map(|axis| v.dot(axis)));
         let [width, height] = self.window.film.map(f64::from);
         let is_length = camera.projection == Projection::Parallel;
@@ -152,8 +156,8 @@ impl View {
         CameraMatrices { world_to_camera, world_to_ndc }
     }
 
-    /// Distance between the places that neighbouring pixels at the film's centre see on a surface at `position` that
-    /// faces the camera.
+    /// Returns the distance between neighbouring pixels at the film's centre, projected onto a surface at `position`
+    /// that faces the camera.
     pub fn spacing(&self, position: Vec3) -> f32 {
         let spacing = 2.0 * self.camera.tan_half_x / self.window.film[0] as f32;
         match self.camera.projection {
@@ -162,7 +166,7 @@ impl View {
         }
     }
 
-    /// Cones of eye rays where `samples` of them share a pixel.
+    /// Returns the cone around an eye ray, for `samples` rays per pixel.
     pub fn cone(&self, samples: u32) -> Cone {
         let across = 2.0 * self.camera.tan_half_x / self.window.film[0] as f32;
         let width = across / (samples.max(1) as f32).sqrt();
@@ -172,8 +176,8 @@ impl View {
         }
     }
 
-    /// Angle between neighbouring pixels at the film's centre, in radians; in a parallel projection that at the
-    /// distance of the scene's centre, or of the film's half width if that is more.
+    /// Returns the angle between neighbouring pixels at the film's centre, in radians. For a parallel projection it is
+    /// taken at the distance of the scene's centre, but at least of half the film's width.
     pub fn pixel_angle(&self) -> f32 {
         let spacing = 2.0 * self.camera.tan_half_x / self.window.film[0] as f32;
         match self.camera.projection {

@@ -12,30 +12,33 @@ use embree::{Accel, BuildQuality, Device, EmbreeError, Hit, Ray, TriangleId};
 use glam::{Vec2, Vec3};
 use scene::Scene;
 
-/// A scene with all tables that methods need.
+/// A scene with all tables that rendering needs.
 pub struct World {
     /// The scene as loaded.
     pub scene: Scene,
-    /// Ray queries over its meshes.
+    /// Ray queries over the meshes.
     pub accel: Accel,
-    /// Per-material tables.
+    /// Materials, looked up at points.
     pub materials: Materials,
     /// Emitters of light.
     pub emitters: Emitters,
-    /// Mirrors and glass.
+    /// Surfaces with mirrors, glass and sharp lobes.
     pub specular: Specular,
-    /// Diagonal of the bounds of all surfaces, or where these reach very far beyond what is around the camera, a
-    /// thousand times the distance of that; 1 if there are none. Lengths that depend on scale derive from it.
+    /// Extent from which lengths that depend on scale derive: the diagonal of all surfaces, limited by
+    /// [`Scene::extent`]; 1 if there are no surfaces.
     pub diagonal: f32,
     pub(super) triangles: Triangles,
     /// Reliefs, if there are any.
     pub(super) reliefs: Option<Reliefs>,
-    /// Surfaces that light passes straight through, if there are any.
+    /// Ray queries over the surfaces that light passes straight through, if there are any.
     pub(super) sheets: Option<Accel>,
 }
 
 impl World {
-    /// Builds the world; `threads` is the number of Embree's build threads.
+    /// Builds the world. `threads` is the number of Embree's build threads.
+    ///
+    /// # Errors
+    /// If Embree cannot build an acceleration structure.
     pub fn new(scene: Scene, threads: usize) -> Result<World, EmbreeError> {
         let device = Device::new(threads)?;
         let materials = Materials::new(&scene);
@@ -53,7 +56,10 @@ impl World {
         Ok(World { scene, accel, materials, emitters, specular, diagonal, triangles, reliefs, sheets })
     }
 
-    /// Builds the acceleration structure anew, at another quality, for benchmarks.
+    /// Rebuilds the acceleration structure at another quality, for benchmarks.
+    ///
+    /// # Errors
+    /// If Embree cannot build the structure.
     pub fn rebuild(&mut self, quality: BuildQuality) -> Result<(), EmbreeError> {
         let meshes = triangle_meshes(&self.scene, &self.materials);
         self.accel = Accel::build_with(self.accel.device(), &meshes, quality)?;
@@ -88,20 +94,20 @@ impl World {
         }
     }
 
-    /// Unit geometric normal of a triangle, on the front by winding.
+    /// Returns the unit geometric normal of a triangle, on the front by winding.
     #[inline]
     pub fn geometric_normal(&self, mesh: u32, triangle: u32) -> Vec3 {
         self.triangles.get(mesh, triangle).normal
     }
 
-    /// Corner 0 of a triangle, and its edges from there to corners 1 and 2.
+    /// Returns corner 0 of a triangle, and the edges from there to corners 1 and 2.
     #[inline]
     pub fn corner_and_edges(&self, id: TriangleId) -> (Vec3, [Vec3; 2]) {
         let triangle = self.triangles.get(id.geometry, id.primitive);
         (triangle.corner, triangle.edges)
     }
 
-    /// Returns the BSDF of the surface, textures looked up.
+    /// Returns the BSDF of a surface at its texture coordinates.
     #[inline]
     pub fn bsdf(&self, s: &Surface) -> Bsdf<'_> {
         let mesh = &self.scene.meshes[s.mesh as usize];
@@ -110,7 +116,7 @@ impl World {
         self.materials.at_coordinates(mesh.material, uv, covered)
     }
 
-    /// Radiance the surface emits towards the unit vector `out`.
+    /// Returns the radiance that a surface emits towards the unit vector `out`.
     #[inline]
     pub fn emitted(&self, s: &Surface, out: Vec3) -> Rgb {
         let mesh = &self.scene.meshes[s.mesh as usize];
@@ -122,8 +128,8 @@ impl World {
         emitted(&emission, s.normal, out, factor)
     }
 
-    /// The albedo that guides denoisers, towards the unit vector `out`: the share of light that `bsdf` reflects, or the
-    /// radiance emitted over the greatest of the surface's mesh, whichever is more, from 0 to 1.
+    /// Returns the albedo that guides denoisers, towards the unit vector `out`, from 0 to 1: the larger of the share of
+    /// light that `bsdf` reflects and the emitted radiance relative to the maximum of the mesh.
     #[inline]
     pub fn guide_albedo(&self, s: &Surface, bsdf: &Bsdf, out: Vec3) -> Rgb {
         let albedo = bsdf.albedo(s.frame.to_local(out)).min(Rgb::ONE);

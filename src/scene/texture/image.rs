@@ -110,8 +110,8 @@ impl Texture {
     }
 }
 
-/// Returns the indices of the texels on both sides of a position, and the interpolation weight of the second. The choice
-/// does not matter far out, where floats have no fraction or overflow the integers.
+/// Returns the indices of the texels on both sides of a position, and the interpolation weight of the second. The
+/// choice does not matter far out, where floats have no fraction or overflow the integers.
 #[inline]
 fn neighbours(position: f32) -> ([i64; 2], f32) {
     let floor = position.floor();

@@ -56,8 +56,8 @@ impl Texels {
         Texels { store: store(&layout), ..layout }
     }
 
-    /// Returns true if `fits` holds for every texel. `fits` must hold for a colour whenever it holds for the grey of each
-    /// of its channels.
+    /// Returns true if `fits` holds for every texel. `fits` must hold for a colour whenever it holds for the grey of
+    /// each of its channels.
     pub fn all(&self, fits: impl Fn(Rgb) -> bool) -> bool {
         match &self.store {
             Store::Coded { values, .. } => {
@@ -109,8 +109,8 @@ impl Texels {
         self.locate(x, y).0
     }
 
-    /// Returns a number that depends on the texels of a square. Reading it brings the square into the cache ahead of its
-    /// use.
+    /// Returns a number that depends on the texels of a square. Reading it brings the square into the cache ahead of
+    /// its use.
     #[inline]
     pub fn peek(&self, square: usize) -> u32 {
         match &self.store {

@@ -40,7 +40,7 @@ impl Floor {
     pub fn new(positions: &[Vec3]) -> Floor {
         let (index, order) = KdTree::build(positions.iter().copied());
         let surface = PointSurface {
-            bsdf: MATERIALS.at(&SCENE, MaterialId(0), Vec2::ZERO),
+            bsdf: MATERIALS.at(MaterialId(0), Vec2::ZERO),
             geometric_normal: Vec3::Z,
             out: Vec3::Z,
         };

@@ -132,8 +132,8 @@ impl AreaLight {
         }
     }
 
-    /// Chooses a triangle in proportion to its area. Returns its index, its first corner, the edges from there and the unit
-    /// normal, and random numbers to choose a point on it.
+    /// Chooses a triangle in proportion to its area. Returns its index, its first corner, the edges from there and the
+    /// unit normal, and random numbers to choose a point on it.
     #[inline]
     pub(super) fn choose_triangle(&self, u: Vec2) -> (u32, [Vec3; 4], Vec2) {
         let (triangle, rest) = self.triangles.sample(u.x);

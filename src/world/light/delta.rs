@@ -38,7 +38,8 @@ pub fn spot_falloff(cos: f32, inner_angle: f32, outer_angle: f32) -> f32 {
     }
 }
 
-/// Returns the flux of a delta light as luminance; for a directional light, the flux through a disk of the given radius.
+/// Returns the flux of a delta light as luminance; for a directional light, the flux through a disk of the given
+/// radius.
 pub fn delta_power(light: &DeltaLight, scene_radius: f32) -> f32 {
     match *light {
         DeltaLight::Point { intensity, .. } => 4.0 * PI * luminance(intensity),

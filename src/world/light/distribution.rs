@@ -21,7 +21,8 @@ pub struct DiscreteDistribution {
 const GUIDE_SPACING: usize = 2;
 
 impl DiscreteDistribution {
-    /// Builds the distribution, with sums in f64. A total of zero makes an empty distribution, which must not be sampled.
+    /// Builds the distribution, with sums in f64. A total of zero makes an empty distribution, which must not be
+    /// sampled.
     pub fn new(weights: impl IntoIterator<Item = f32>) -> DiscreteDistribution {
         let mut sum = 0.0f64;
         let mut sums = vec![0.0f64];
@@ -87,8 +88,8 @@ impl DiscreteDistribution {
         self.search(u, self.bracket(u))
     }
 
-    /// Returns a range of outcomes that contains the outcome at `u`. It is a separate step so that several searches can wait
-    /// for memory together.
+    /// Returns a range of outcomes that contains the outcome at `u`. It is a separate step so that several searches can
+    /// wait for memory together.
     #[inline]
     pub(super) fn bracket(&self, u: f32) -> Bracket {
         let spans = self.guide.len() - 1;

@@ -133,8 +133,8 @@ impl Emitters {
     }
 
     /// Returns the densities with which [`Emitters::sample_direct`] at `at` samples points of the meshes `mesh` at
-    /// `distance`. `cos` are the cosines, of either sign, between the normals and the ray. Densities are zero for meshes
-    /// that do not emit.
+    /// `distance`. `cos` are the cosines, of either sign, between the normals and the ray. Densities are zero for
+    /// meshes that do not emit.
     #[inline]
     pub fn pdf_areas(&self, at: Receivers16, mesh: &U32x16, distance: &F32x16, cos: &F32x16) -> F32x16 {
         let lights = mesh.map(|mesh| self.light_of_mesh[mesh as usize]);

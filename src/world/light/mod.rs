@@ -1,8 +1,9 @@
-//! Emitters of light, sampled: emitting meshes, point, spot and directional lights, and the environment with the distant
-//! discs before it.
+//! Emitters of light, sampled: emitting meshes, point, spot and directional lights, and the environment with the
+//! distant discs before it.
 //!
-//! [`Emitters`] is built once from the scene. Next-event estimation chooses one emitter in proportion to a rough irradiance
-//! at the shaded point, with a tree if there are many, then samples that emitter. The light pass chooses by power.
+//! [`Emitters`] is built once from the scene. Next-event estimation chooses one emitter in proportion to a rough
+//! irradiance at the shaded point, with a tree if there are many, then samples that emitter. The light pass chooses by
+//! power.
 
 mod area;
 mod delta;

@@ -24,8 +24,8 @@ struct RegionNode {
 }
 
 impl Regions {
-    /// Halves the points along the widest axis until regions hold at most `most` points. Returns the points in each region,
-    /// too.
+    /// Halves the points along the widest axis until regions hold at most `most` points. Returns the points in each
+    /// region, too.
     pub fn new(points: &[Vec3], most: usize) -> (Regions, Vec<Vec<u32>>) {
         let mut order: Vec<u32> = (0..points.len() as u32).collect();
         let (mut regions, mut members) = (Regions { nodes: Vec::new(), depth: 0 }, Vec::new());
@@ -79,8 +79,8 @@ impl Regions {
         }
     }
 
-    /// Returns the regions of sixteen points. All lanes descend to the depth of the deepest leaf, so that they wait for memory
-    /// together.
+    /// Returns the regions of sixteen points. All lanes descend to the depth of the deepest leaf, so that they wait for
+    /// memory together.
     #[inline]
     pub fn find(&self, x: &Vec3x16) -> [usize; LANES] {
         let (mut node, rows) = ([0; LANES], x.rows());

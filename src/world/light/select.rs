@@ -1,8 +1,8 @@
 //! Choice of the emitter to sample for a shaded point.
 //!
 //! Candidates are the environment and the nodes of a cut of a tree over the emitters, or all emitters if there are few.
-//! A candidate is chosen in proportion to its estimated irradiance at the point, mixed with its power so that no emitter is
-//! starved. The choice continues down the tree.
+//! A candidate is chosen in proportion to its estimated irradiance at the point, mixed with its power so that no
+//! emitter is starved. The choice continues down the tree.
 
 use super::area::AreaLight;
 use super::distribution::DiscreteDistribution;

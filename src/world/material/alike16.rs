@@ -1,5 +1,5 @@
-//! Materials with the same lobes and coat at sixteen points at once: [`Bsdf::eval`] and [`Bsdf::bound`] as loops over lanes
-//! that compile to vector code.
+//! Materials with the same lobes and coat at sixteen points at once: [`Bsdf::eval`] and [`Bsdf::bound`] as loops over
+//! lanes that compile to vector code.
 
 use super::lobe::{DirectionBounds16, Directions16, FacetBounds16, LobeLanes, MAX_LOBES};
 use super::model::{Bsdf, Model};
@@ -17,8 +17,8 @@ pub struct AlikeBsdfs16<'m> {
 }
 
 impl<'m> AlikeBsdfs16<'m> {
-    /// Collects the material and its `wo` (z >= 0) that `at` returns for each lane. Returns `None` if the lobes or coats
-    /// differ, or a material transmits light.
+    /// Collects the material and its `wo` (z >= 0) that `at` returns for each lane. Returns `None` if the lobes or
+    /// coats differ, or a material transmits light.
     pub fn new(at: impl Fn(usize) -> (Bsdf<'m>, Vec3)) -> Option<AlikeBsdfs16<'m>> {
         let first = at(0).0;
         let zero = Vec3x16::default();

@@ -1,9 +1,9 @@
 //! The Lambertian base of a material, under a dielectric coat if it has one.
 //!
-//! Definitions are those of Mitsuba's `plastic` and `roughplastic`. The coat's transmittance attenuates the base on the way
-//! in and out, and light is reflected back and forth between base and coat.
-//! Rules are those of `roughplastic`, too: tables of 64 cosines, evenly spaced and linear between them; single scattering
-//! only; the internal reflectance is the plain mean over the 64 cosines.
+//! Definitions are those of Mitsuba's `plastic` and `roughplastic`. The coat's transmittance attenuates the base on the
+//! way in and out, and light is reflected back and forth between base and coat. Rules are those of `roughplastic`, too:
+//! tables of 64 cosines, evenly spaced and linear between them; single scattering only; the internal reflectance is the
+//! plain mean over the 64 cosines.
 
 use super::albedo::albedo;
 use super::fresnel;
@@ -105,8 +105,8 @@ impl BaseModel {
         let (mean_transmittance, internal_reflectance) = match &interface {
             CoatInterface::None => (1.0, 0.0),
             CoatInterface::Burley => (1.0 - 1.0 / 42.0, 0.0),
-            // By reciprocity the mean transmittance outside follows from the reflectance inside. The fit inside determines
-            // the brightness of the base, so both come from it.
+            // By reciprocity the mean transmittance outside follows from the reflectance inside. The fit inside
+            // determines the brightness of the base, so both come from it.
             CoatInterface::Smooth(eta) => {
                 let internal = fresnel::diffuse_reflectance(1.0 / eta);
                 (eta * eta * (1.0 - internal), internal)
@@ -133,7 +133,8 @@ impl BaseModel {
         albedo * self.factor / (1.0 - returned * self.internal_reflectance)
     }
 
-    /// Returns the share of the light from one direction that is reflected, for the coat's transmittance in that direction.
+    /// Returns the share of the light from one direction that is reflected, for the coat's transmittance in that
+    /// direction.
     #[inline]
     pub fn albedo(&self, brdf: Rgb, transmittance: f32) -> Rgb {
         brdf * (PI * transmittance * self.mean_transmittance)

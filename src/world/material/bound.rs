@@ -8,10 +8,11 @@ use base::math::Rgb;
 use glam::Vec3;
 
 impl Bsdf<'_> {
-    /// Returns an upper bound, per channel, of `eval(wo, wi)` · cos θ_i over all `wi` within `bound` on the side of `wo`.
+    /// Returns an upper bound, per channel, of `eval(wo, wi)` · cos θ_i over all `wi` within `bound` on the side of
+    /// `wo`.
     ///
-    /// The bound is exact for a Lambertian surface at `cos_i_max`. It excludes delta lobes, as `eval` does. NaN in `bound`
-    /// means that nothing is known.
+    /// The bound is exact for a Lambertian surface at `cos_i_max`. It excludes delta lobes, as `eval` does. NaN in
+    /// `bound` means that nothing is known.
     #[inline]
     pub fn bound(&self, wo: Vec3, bound: &DirectionBound) -> Rgb {
         let cos_max = bound.cos_i_max.min(1.0);

@@ -41,7 +41,8 @@ impl LobeSet {
 }
 
 impl<'m> Bsdf<'m> {
-    /// Returns the value for light from `wi` seen from `wo`, without delta lobes. The directions may be on different sides.
+    /// Returns the value for light from `wi` seen from `wo`, without delta lobes. The directions may be on different
+    /// sides.
     #[inline]
     pub fn eval(&self, wo: Vec3, wi: Vec3) -> Rgb {
         self.eval_pdf(wo, wi).0
@@ -89,8 +90,8 @@ impl<'m> Bsdf<'m> {
         self.any_lobe(LobeModel::is_glossy)
     }
 
-    /// Returns the part of the delta lobes and of the lobes too sharp to count as diffuse; `None` if there are no such sharp
-    /// lobes.
+    /// Returns the part of the delta lobes and of the lobes too sharp to count as diffuse; `None` if there are no such
+    /// sharp lobes.
     #[inline]
     pub fn glossy_part(&self) -> Option<Self> {
         let dull = self.lobes(|lobe| !lobe.is_glossy() && !lobe.is_delta());
@@ -108,8 +109,8 @@ impl<'m> Bsdf<'m> {
         self.any_lobe(LobeModel::passes_straight)
     }
 
-    /// Splits the material into the part without sharp lobes and the part of the sharp lobes; `None` if there are no sharp
-    /// lobes.
+    /// Splits the material into the part without sharp lobes and the part of the sharp lobes; `None` if there are no
+    /// sharp lobes.
     #[inline]
     pub fn split_sharp_lobes(&self) -> Option<(Self, Self)> {
         let sharp = self.sharp_lobes();
@@ -178,8 +179,8 @@ impl<'m> Bsdf<'m> {
         self.model.coat
     }
 
-    /// Splits the material into base and smooth lobes. Returns the BRDF of the base, times the coat's transmittance for the
-    /// cosine `cos_out`, and the part of the lobes, if they reflect anything.
+    /// Splits the material into base and smooth lobes. Returns the BRDF of the base, times the coat's transmittance for
+    /// the cosine `cos_out`, and the part of the lobes, if they reflect anything.
     #[inline]
     pub fn split_base(&self, cos_out: f32) -> (Rgb, Option<Self>) {
         let base = self.base * self.coat_transmittance(cos_out.abs());
@@ -243,8 +244,9 @@ impl<'m> Bsdf<'m> {
         self.model.base.interface.transmittance(cos)
     }
 
-    /// Returns the share of the flux from `wi` that a virtual light at this point radiates diffusely to the side of `wi`: the
-    /// reflection by the base, through the coat, and by the lobes rough enough to count as diffuse. Paths carry the rest.
+    /// Returns the share of the flux from `wi` that a virtual light at this point radiates diffusely to the side of
+    /// `wi`: the reflection by the base, through the coat, and by the lobes rough enough to count as diffuse. Paths
+    /// carry the rest.
     ///
     /// The virtual light's intensity per cosine is flux · `diffuse_albedo` / π.
     #[inline]
@@ -314,8 +316,8 @@ impl<'m> Bsdf<'m> {
         self.model.kinds.smooth && self.any_lobe(|lobe| !lobe.is_delta())
     }
 
-    /// Returns the factor on the z of directions that turns them to the side of the normal: -1 if a two-sided surface is seen
-    /// from behind.
+    /// Returns the factor on the z of directions that turns them to the side of the normal: -1 if a two-sided surface
+    /// is seen from behind.
     #[inline]
     pub(super) fn side(&self, wo: Vec3) -> f32 {
         if wo.z < 0.0 && self.model.two_sided && !self.model.kinds.transmit { -1.0 } else { 1.0 }

@@ -1,7 +1,7 @@
 //! Unpolarised reflectance of smooth interfaces.
 //!
-//! Papers: the diffuse average follows Egan and Hilgeman, *Spectral reflectance of particulate materials*, 1973, and d'Eon
-//! and Irving, *A Quantized-Diffusion Model for Rendering Translucent Materials*, 2011.
+//! Papers: the diffuse average follows Egan and Hilgeman, *Spectral reflectance of particulate materials*, 1973, and
+//! d'Eon and Irving, *A Quantized-Diffusion Model for Rendering Translucent Materials*, 2011.
 
 use base::math::{F32x16, LANES, Rgb, Vec3x16};
 use scene::Fresnel;
@@ -75,7 +75,8 @@ fn conductor_channel(cos_i: f32, eta: f32, k: f32) -> f32 {
 }
 
 /// Returns the cosine-weighted mean of the reflectance over the hemisphere, by the fits that Mitsuba's `plastic` uses.
-/// `eta` is the index of refraction on the far side over that on the light's side. The error is 0.2 % for common indices.
+/// `eta` is the index of refraction on the far side over that on the light's side. The error is 0.2 % for common
+/// indices.
 pub(super) fn diffuse_reflectance(eta: f32) -> f32 {
     let inv = 1.0 / eta;
     if eta < 1.0 {
@@ -111,8 +112,8 @@ pub(super) trait Curve {
 
     /// Returns the maximum reflectance at any cosine >= `cos_min`, given the reflectance `normal` at normal incidence.
     ///
-    /// The larger of the values at both ends is the maximum: a dielectric's reflectance grows towards grazing incidence, a
-    /// conductor's may first fall and then rises to 1, and Schlick's approximation is monotonic.
+    /// The larger of the values at both ends is the maximum: a dielectric's reflectance grows towards grazing
+    /// incidence, a conductor's may first fall and then rises to 1, and Schlick's approximation is monotonic.
     fn max_reflectance(&self, cos_min: f32, normal: Rgb) -> Rgb;
 }
 

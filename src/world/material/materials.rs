@@ -56,9 +56,9 @@ impl Materials {
         self.at_coordinates(id, || uv, || 0.0)
     }
 
-    /// Returns the material at the texture coordinates that `uv` returns, which is called only if something is textured.
-    /// Textures are averaged over a square around them, of the side that `covered` returns, if the mean of the reflected
-    /// light stays the same.
+    /// Returns the material at the texture coordinates that `uv` returns, which is called only if something is
+    /// textured. Textures are averaged over a square around them, of the side that `covered` returns, if the mean of
+    /// the reflected light stays the same.
     #[inline]
     pub fn at_coordinates(
         &self,

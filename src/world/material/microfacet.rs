@@ -1,15 +1,15 @@
 //! Isotropic microfacet distributions: density, Smith masking and sampling of visible normals.
 //!
-//! Masking is expressed as `V1 = G1 / (2 cos θ)`, which stays finite at the horizon, where G1 / cos θ is 0/0. The reflection
-//! lobe is then `F D V1(wo) V1(wi)` and its sampling density `D V1(wo) / 2`.
+//! Masking is expressed as `V1 = G1 / (2 cos θ)`, which stays finite at the horizon, where G1 / cos θ is 0/0. The
+//! reflection lobe is then `F D V1(wo) V1(wi)` and its sampling density `D V1(wo) / 2`.
 //!
-//! Paper: Walter et al., *Microfacet Models for Refraction through Rough Surfaces*, 2007 (D, G1); Heitz and
-//! d'Eon, *Importance Sampling Microfacet-Based BSDFs using the Distribution of Visible Normals*, 2014;
-//! Heitz, *Sampling the GGX Distribution of Visible Normals*, 2018; Giles, *Approximating the
-//! erfinv function*, 2010; Abramowitz and Stegun 7.1.26 (erfc).
-//! Deviations: Beckmann's masking in the BSDF is Walter's rational fit, as in Mitsuba. The sampling density uses the exact
-//! function, which is the one that visible normals follow. The weight of a sample accounts for the difference (up to
-//! 0.35 %).
+//! Paper: Walter et al., *Microfacet Models for Refraction through Rough Surfaces*, 2007 (D, G1); Heitz and d'Eon,
+//! *Importance Sampling Microfacet-Based BSDFs using the Distribution of Visible Normals*, 2014; Heitz, *Sampling the
+//! GGX Distribution of Visible Normals*, 2018; Giles, *Approximating the erfinv function*, 2010; Abramowitz and Stegun
+//! 7.1.26 (erfc).
+//! Deviations: Beckmann's masking in the BSDF is Walter's rational fit, as in Mitsuba. The sampling density uses the
+//! exact function, which is the one that visible normals follow. The weight of a sample accounts for the difference (up
+//! to 0.35 %).
 
 use base::math::{F32x16, LANES, Rgb};
 use base::sampling::uniform_disk;
@@ -158,8 +158,8 @@ impl Microfacets {
         }
     }
 
-    /// Integrates the mean of `f(h)` over the facet normals seen from `wo`, by a product rule. `rule` has an even number of
-    /// nodes, `wo` lies in the xz plane, and `f` is symmetric about it, so that one half is enough.
+    /// Integrates the mean of `f(h)` over the facet normals seen from `wo`, by a product rule. `rule` has an even
+    /// number of nodes, `wo` lies in the xz plane, and `f` is symmetric about it, so that one half is enough.
     pub fn mean_over_visible(&self, wo: Vec3, rule: &[(f32, f32)], f: impl Fn(Vec3) -> Rgb) -> Rgb {
         let stretched = Vec3::new(self.alpha * wo.x, self.alpha * wo.y, wo.z).normalize();
         let half = &rule[..rule.len() / 2];
@@ -211,8 +211,8 @@ fn gaussian_slope(u: f32) -> f32 {
     erf_inv(2.0 * u.clamp(1e-7, 1.0 - 1e-7) - 1.0)
 }
 
-/// Samples the slope of a visible facet along the view, for unit roughness. The distribution (cos θ - x sin θ)⁺ exp(-x²) is
-/// inverted by Newton's method within a bracket.
+/// Samples the slope of a visible facet along the view, for unit roughness. The distribution (cos θ - x sin θ)⁺
+/// exp(-x²) is inverted by Newton's method within a bracket.
 fn visible_gaussian_slope(stretched: Vec3, u: f32) -> f32 {
     let cos = stretched.z;
     let sin = (stretched.x * stretched.x + stretched.y * stretched.y).sqrt();

@@ -1,16 +1,16 @@
-//! Scattering at surfaces. [`Materials`] holds the values that are computed once per scene. [`Bsdf`] is a material at one
-//! point, to be evaluated, sampled and bounded.
+//! Scattering at surfaces. [`Materials`] holds the values that are computed once per scene. [`Bsdf`] is a material at
+//! one point, to be evaluated, sampled and bounded.
 //!
 //! A material is a Lambertian base, with or without a dielectric coat, and lobes (see [`scene::Material`]). It may have
 //! gaps. Definitions are those of Mitsuba 3, so that images agree with its references: `diffuse`, `plastic`,
 //! `roughplastic`, `conductor`, `roughconductor`, `dielectric`, `roughdielectric`, `principled`, `mask` and `twosided`.
 //!
-//! Files use only files before them in this order: `microfacet`, `fresnel`, `table` and `albedo`; `base` and `lobe` (one
-//! file per lobe); `model` (data); `bsdf`, `sample`, `bound`, `packet`, `alike16` and `straight` (evaluation); `colours`,
-//! `layers` and `build` (from the scene's materials); `materials` (lookup).
+//! Files use only files before them in this order: `microfacet`, `fresnel`, `table` and `albedo`; `base` and `lobe`
+//! (one file per lobe); `model` (data); `bsdf`, `sample`, `bound`, `packet`, `alike16` and `straight` (evaluation);
+//! `colours`, `layers` and `build` (from the scene's materials); `materials` (lookup).
 //!
-//! All directions are in the local shading frame (z = shading normal), point away from the surface and have unit length:
-//! `wo` towards the eye or the previous vertex of the path, `wi` towards the light.
+//! All directions are in the local shading frame (z = shading normal), point away from the surface and have unit
+//! length: `wo` towards the eye or the previous vertex of the path, `wi` towards the light.
 
 mod albedo;
 mod alike16;

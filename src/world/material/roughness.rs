@@ -1,9 +1,9 @@
-//! Textured roughness: one model per level of it, so that the tables by roughness are those of a constant roughness, and a
-//! constant roughness costs nothing more.
+//! Textured roughness: one model per level of it, so that the tables by roughness are those of a constant roughness,
+//! and a constant roughness costs nothing more.
 //!
-//! Deviations: a level represents values within 1.1 % of its own. This is less than half a step of an 8-bit image at 0.5
-//! in a texture of α², or at 0.18 in a texture of α. The tables of the coat are made for every eighth level. Values below
-//! 1/1024 are clamped to it. The roughness of other lobes is the mean of its texture.
+//! Deviations: a level represents values within 1.1 % of its own. This is less than half a step of an 8-bit image at
+//! 0.5 in a texture of α², or at 0.18 in a texture of α. The tables of the coat are made for every eighth level. Values
+//! below 1/1024 are clamped to it. The roughness of other lobes is the mean of its texture.
 
 use base::math::{Rgb, luminance};
 use scene::{Lobe, Material, Roughness, TextureId, Textures};

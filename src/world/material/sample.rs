@@ -1,5 +1,5 @@
-//! Sampling of directions. Base or lobe is chosen by its estimated albedo; the base is sampled by the cosine, a lobe by its
-//! own rule.
+//! Sampling of directions. Base or lobe is chosen by its estimated albedo; the base is sampled by the cosine, a lobe by
+//! its own rule.
 
 use super::bsdf::Outgoing;
 use super::lobe::{BsdfSample, MAX_LOBES};
@@ -9,8 +9,8 @@ use base::sampling::cosine_hemisphere;
 use glam::{Vec2, Vec3};
 use std::f32::consts::{FRAC_1_PI, PI};
 
-/// All delta lobes of a material, for following specular chains without randomness. Each weight is the lobe's reflectance
-/// or transmittance, and each pdf is 1.
+/// All delta lobes of a material, for following specular chains without randomness. Each weight is the lobe's
+/// reflectance or transmittance, and each pdf is 1.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct DeltaLobes {
     /// Specular reflection.
@@ -78,8 +78,8 @@ impl Bsdf<'_> {
         Some(last)
     }
 
-    /// Returns the share of the light that passes straight through the surface at the cosine `cos` to the shading normal,
-    /// of either sign.
+    /// Returns the share of the light that passes straight through the surface at the cosine `cos` to the shading
+    /// normal, of either sign.
     #[inline]
     pub fn straight_transmittance(&self, cos: f32) -> Rgb {
         let wo = Vec3::new(0.0, 0.0, cos);

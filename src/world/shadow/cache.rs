@@ -1,24 +1,24 @@
-//! Cache of recent occluders of rays towards a light, tested before a ray is traced.
+//! Cache of recent occluders, which are tested before a ray towards a light is traced.
 //!
 //! Paper: Herzog et al. 2009, section 3 (an occluder hash cache saves more than 20 % of shadow rays).
-//! Deviations: a slot holds several triangles and no key. Its triangles were inserted by rays to some light,
-//! mostly the same one; testing another's occluder is no error, only less likely to help.
+//! Deviations: a slot holds several triangles and no key. Occluders of another light with the same slot do no harm;
+//! they are only less likely to help.
 //!
-//! **The cache changes no answer.** It says "occluded" only where a ray passes a triangle's edges and the
-//! segment's ends at more than [`MARGIN`] roundings of the coordinates involved, and the plane at more than
-//! that angle: rounding in Embree cannot change such an answer. All other rays are traced.
+//! **The cache changes no answer.** It reports an occlusion only if the ray keeps a margin of [`MARGIN`] to the
+//! triangle's edges, to the segment's ends and to grazing incidence, so that rounding in Embree cannot change the
+//! answer. All other rays are traced.
 //!
-//! The content of a cache depends on earlier queries. So that results do not depend on threads, its user
-//! clears it ([`OccluderCache::forget`]) at boundaries of the work that do not depend on threads either.
+//! The content of a cache depends on earlier queries. Its user clears it ([`OccluderCache::forget`]) at boundaries of
+//! the work that do not depend on threads, so that results do not either.
 
 use base::setting::settings;
 use embree::{Occluder, Ray, TriangleId};
 use glam::Vec3;
 
-/// Margin to edges and ends, in roundings, that a ray must keep.
+/// Relative margin to edges and ends that a ray must keep.
 const MARGIN: f32 = 64.0 * f32::EPSILON;
 
-/// Numbers stored of a triangle: a corner, two edges, its largest coordinate and its largest edge component.
+/// Number of values stored per triangle: corner, two edges, largest coordinate and largest component of an edge.
 const ROWS: usize = 11;
 
 settings! {
@@ -31,24 +31,27 @@ settings! {
     }
 }
 
-/// A hash table of triangles.
+/// A hash table of occluding triangles.
 #[derive(Clone, Debug)]
 pub struct OccluderCache {
+    /// Number of occluders per slot.
     ways: usize,
-    /// Number of slots - 1.
+    /// Number of slots minus 1.
     mask: u32,
     slots: Vec<CacheSlot>,
-    /// `ROWS` rows of `ways` numbers for each slot.
+    /// Triangles: `ROWS` rows of `ways` values per slot.
     triangles: Vec<f32>,
+    /// Ids of the triangles.
     ids: Vec<TriangleId>,
+    /// Number of clears; slots of other generations are empty.
     generation: u32,
 }
 
-/// State of a slot; its content is void unless it is of the cache's generation.
+/// State of a slot. The slot is empty unless it has the cache's generation.
 #[derive(Clone, Copy, Debug, Default)]
 struct CacheSlot {
     generation: u32,
-    /// Index of the way that is replaced next.
+    /// Index of the occluder that is replaced next.
     next: u32,
 }
 
@@ -76,23 +79,24 @@ impl OccluderCache {
         }
     }
 
+    /// Returns the slot of `key`.
     #[inline(always)]
     fn slot(&self, key: u32) -> usize {
-        // Fibonacci hashing; neighbouring representatives go to slots far from each other.
+        // Fibonacci hashing sends neighbouring keys to distant slots.
         (key.wrapping_mul(2_654_435_769).rotate_left(15) & self.mask) as usize
     }
 
     /// Returns the slot of `key`, if it is not empty.
     #[inline(always)]
-    fn held(&self, key: u32) -> Option<usize> {
+    fn filled_slot(&self, key: u32) -> Option<usize> {
         let slot = self.slot(key);
         (self.slots[slot].generation == self.generation).then_some(slot)
     }
 
-    /// Returns one of the triangles stored for `key` that certainly occludes the ray.
+    /// Returns a triangle in the slot of `key` that certainly occludes the ray; `None` if there is none.
     #[inline]
     pub fn occluder(&self, key: u32, ray: &Ray) -> Option<Occluder> {
-        let slot = self.held(key)?;
+        let slot = self.filled_slot(key)?;
         match self.ways {
             1 => self.search::<1>(slot, ray),
             2 => self.search::<2>(slot, ray),
@@ -101,6 +105,7 @@ impl OccluderCache {
         }
     }
 
+    /// Tests the triangles of a slot.
     #[inline(always)]
     fn search<const W: usize>(&self, slot: usize, ray: &Ray) -> Option<Occluder> {
         let rows = &self.triangles[slot * W * ROWS..][..W * ROWS];
@@ -116,14 +121,14 @@ impl OccluderCache {
         Some(Occluder { t: t[w], geometry: ids[w].geometry, primitive: ids[w].primitive })
     }
 
-    /// Stores an occluder found on the way to `key`, replacing the oldest.
+    /// Stores an occluder of a ray to `key`, in place of the oldest.
     #[inline]
     pub fn keep(&mut self, key: u32, id: TriangleId, corner: Vec3, edges: [Vec3; 2]) {
         let slot = self.slot(key);
         let ids = &mut self.ids[slot * self.ways..][..self.ways];
         let state = &mut self.slots[slot];
         if state.generation != self.generation {
-            // Triangles of no extent occlude nothing.
+            // Triangles without extent occlude nothing.
             ids.fill(TriangleId::NONE);
             self.triangles[slot * self.ways * ROWS..][..self.ways * ROWS].fill(0.0);
             *state = CacheSlot { generation: self.generation, next: 0 };
@@ -140,30 +145,33 @@ impl OccluderCache {
     }
 }
 
-/// A triangle in the form in which it is tested.
+/// A cached triangle, ready for the test.
 #[derive(Clone, Copy)]
 struct CachedTriangle {
     corner: Vec3,
     edges: [Vec3; 2],
     /// Largest coordinate.
     size: f32,
-    /// Largest component of an edge, the third included.
+    /// Bound of the components of all three edges.
     edge: f32,
 }
 
 impl CachedTriangle {
+    /// Prepares a triangle.
     fn new(corner: Vec3, edges: [Vec3; 2]) -> CachedTriangle {
         let largest = |v: Vec3| v.abs().max_element();
         let edge = largest(edges[0]).max(largest(edges[1]));
         CachedTriangle { corner, edges, size: largest(corner) + edge, edge: 2.0 * edge }
     }
 
+    /// Reads a triangle; `row` returns its values.
     #[inline(always)]
     fn from_rows(row: impl Fn(usize) -> f32) -> CachedTriangle {
         let v = |i| Vec3::new(row(i), row(i + 1), row(i + 2));
         CachedTriangle { corner: v(0), edges: [v(3), v(6)], size: row(9), edge: row(10) }
     }
 
+    /// Returns the values to be stored.
     fn rows(&self) -> [f32; ROWS] {
         let ([x, y, z], [a, b]) = (self.corner.to_array(), self.edges);
         [x, y, z, a.x, a.y, a.z, b.x, b.y, b.z, self.size, self.edge]
@@ -178,6 +186,7 @@ struct RayExtent {
 }
 
 impl RayExtent {
+    /// Measures a ray.
     #[inline(always)]
     fn of(ray: &Ray) -> RayExtent {
         let larger = |a: f32, b: f32| if a > b { a } else { b };
@@ -186,10 +195,11 @@ impl RayExtent {
     }
 }
 
-/// Tests whether the ray hits the inside of a triangle beyond doubt; returns the ray parameter too. All
-/// comparisons are false for values that are not finite.
+/// Tests if the ray hits the inside of a triangle with certainty. Returns the ray parameter, too. The test fails for
+/// values that are not finite.
 ///
-/// Möller and Trumbore 1997, with every quantity times the determinant, and compared with its rounding.
+/// Paper: Möller and Trumbore, *Fast, Minimum Storage Ray/Triangle Intersection*, 1997. Every quantity is scaled by the
+/// determinant and compared with its rounding error.
 #[inline(always)]
 fn certain(triangle: &CachedTriangle, ray: &Ray, extent: RayExtent) -> (bool, f32) {
     let [e1, e2] = triangle.edges;

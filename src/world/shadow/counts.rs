@@ -8,9 +8,9 @@ use std::cell::Cell;
 pub struct QueryCounts {
     /// Number of queries, of one ray or of a packet.
     pub queries: u64,
-    /// Number of rays queried.
+    /// Number of rays.
     pub rays: u64,
-    /// Number of rays found occluded.
+    /// Number of occluded rays.
     pub occluded: u64,
     /// Number of rays that the occluder cache answered.
     pub saved: u64,
@@ -28,7 +28,7 @@ pub struct ShadowCounts {
 add_fields!(ShadowCounts { single, packets });
 
 impl ShadowCounts {
-    /// Adds the counts that are not zero to the statistics of a run.
+    /// Reports the counts that are not zero to the statistics of a run.
     pub fn report(&self, stats: &mut Stats) {
         for (kind, tally) in [("single", self.single), ("neighbours", self.packets)] {
             let figures = [

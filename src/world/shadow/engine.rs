@@ -1,7 +1,6 @@
-//! Shadow queries in a world, counted, and answered by an occluder cache where there is one.
+//! Shadow queries in a world, counted, with or without an occluder cache.
 //!
-//! There is one engine for each thread, or it is created on demand: without a cache it is a reference and
-//! counters that nobody reads.
+//! Each thread has its own engine. An engine without a cache is cheap to create: a reference and counters.
 
 use super::cache::{OccluderCache, OccluderCacheSettings};
 use super::counts::{Counters, ShadowCounts};
@@ -26,25 +25,25 @@ impl<'w> Engine<'w> {
         Engine { world, cache: None, coherent: true, counters: Counters::default() }
     }
 
-    /// Creates an engine without an occluder cache for packets of rays from points far apart, which Embree traces one
-    /// by one: those of records take half to three quarters of the time.
+    /// Creates an engine without an occluder cache for packets of rays from distant points, which Embree traces one by
+    /// one.
     pub fn scattered(world: &'w World) -> Engine<'w> {
         Engine { coherent: false, ..Engine::new(world) }
     }
 
-    /// Creates an engine, with an occluder cache if rays are to be `cached`.
+    /// Creates an engine, with an occluder cache if `cached`.
     pub fn with(world: &'w World, cached: bool, settings: OccluderCacheSettings) -> Engine<'w> {
         let cache = cached.then(|| RefCell::new(OccluderCache::new(settings)));
         Engine { cache, ..Engine::new(world) }
     }
 
-    /// The world.
+    /// Returns the world.
     #[inline]
     pub fn world(&self) -> &'w World {
         self.world
     }
 
-    /// Clears the cache. To be called at boundaries of the work that do not depend on the number of threads.
+    /// Clears the cache. Callers do this at boundaries of the work that do not depend on the number of threads.
     pub fn begin_chunk(&self) {
         if let Some(cache) = &self.cache {
             cache.borrow_mut().forget();
@@ -67,20 +66,20 @@ impl<'w> Engine<'w> {
         occluded
     }
 
-    /// Returns a triangle that occludes a ray; of several, any. `key` identifies the light in the cache.
+    /// Returns any triangle that occludes a ray. `key` identifies the light in the cache.
     #[inline]
     pub fn occluder(&self, ray: &Ray, key: u32) -> Option<Occluder> {
-        let known = self.cache.as_ref().and_then(|cache| cache.borrow().occluder(key, ray));
-        let found = known.or_else(|| self.world.accel.occluder(ray));
-        if let (Some(cache), None, Some(occluder)) = (&self.cache, known, found) {
+        let cached = self.cache.as_ref().and_then(|cache| cache.borrow().occluder(key, ray));
+        let found = cached.or_else(|| self.world.accel.occluder(ray));
+        if let (Some(cache), None, Some(occluder)) = (&self.cache, cached, found) {
             let (corner, edges) = self.world.corner_and_edges(occluder.id());
             cache.borrow_mut().keep(key, occluder.id(), corner, edges);
         }
-        self.counters.single.count(1, u32::from(found.is_some()), u32::from(known.is_some()));
+        self.counters.single.count(1, u32::from(found.is_some()), u32::from(cached.is_some()));
         found
     }
 
-    /// Returns the lanes of `valid` that are occluded, of rays towards one light.
+    /// Returns the lanes of `valid` whose rays are occluded. All rays go to one light.
     #[inline]
     pub fn occluded16(&self, rays: &Rays16, valid: u16) -> u16 {
         let occluded = self.world.accel.occluded16(rays, valid, self.coherent);
@@ -88,7 +87,7 @@ impl<'w> Engine<'w> {
         occluded
     }
 
-    /// As [`Engine::occluded16`], but also writes the occluders to the returned lanes of `found`.
+    /// Returns the lanes of `valid` whose rays are occluded, and writes their occluders to these lanes of `found`.
     #[inline]
     pub fn occluders16(&self, rays: &Rays16, valid: u16, found: &mut Occluders16) -> u16 {
         let occluded = self.world.accel.occluders16(rays, valid, self.coherent, found);

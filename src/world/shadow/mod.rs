@@ -1,8 +1,8 @@
-//! Shadow rays: segments whose ends are offset from their surfaces, packets of them, and the engine that
-//! tests them for occlusion.
+//! Shadow rays: segments whose ends are offset from their surfaces, and the engine that tests them for occlusion, one
+//! by one or in packets.
 //!
-//! [`segment()`] and [`ray_from`] make rays; [`Engine`] traces and counts them, and may test an occluder
-//! cache first. The cache changes the time of an answer and the occluder named, never the answer itself.
+//! [`segment()`] and [`ray_from`] make rays. [`Engine`] traces and counts them, and may test an occluder cache first.
+//! The cache changes the time of a query and which occluder it returns, but never whether a ray is occluded.
 
 mod cache;
 mod counts;

@@ -4,12 +4,10 @@ use super::OccluderCacheSettings;
 use base::setting::settings;
 
 settings! {
-    /// Use of the occluder cache by a method, for single rays only. It changes the time that a picture takes, and
-    /// nothing in the picture.
+    /// Use of the occluder cache by a method. It changes the render time and nothing in the image.
     ///
-    /// Packets do not use it: it was never worth its cost where that was measured, and Embree's answers in
-    /// coherent packets depend, for a ray in some ten million, on the other rays traced with it, so that leaving
-    /// out those that the cache could answer would change a picture now and then.
+    /// Single rays use the cache, packets do not. Embree's answers in coherent packets depend, for very few rays, on
+    /// the other rays of the packet. If cached rays were left out, images could change.
     pub struct ShadowSettings in "Lightcuts" {
         /// Cache of occluders that single shadow rays test first, for speed; `auto`: where cuts are not shared.
         cached: Option<bool> = None => [.named("occluder_cache")];
@@ -19,10 +17,8 @@ settings! {
 }
 
 impl ShadowSettings {
-    /// Returns true if rays from eye samples use it; `shared` if neighbouring samples share cuts.
-    ///
-    /// Measured by `lightsplat bench shadow`: the cache is worth its cost for samples that all have cuts of
-    /// their own. Where they share cuts, the few single rays in between have hardly any occluders in common.
+    /// Returns true if rays from eye samples use the cache. `shared` is true if neighbouring samples share cuts: the
+    /// few single rays then have hardly any occluders in common.
     pub fn for_samples(&self, shared: bool) -> bool {
         self.cached.unwrap_or(!shared)
     }

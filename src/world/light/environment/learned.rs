@@ -2,9 +2,9 @@
 //! occluded in a room, and samples by radiance alone are wasted.
 //!
 //! Paper: Vévoda, Kondapaneni & Křivánek, *Bayesian online regression for adaptive direct illumination sampling*, 2018.
-//! Deviations: the visibility is learned once, before any sample is taken. Probabilities are in proportion to the root mean
-//! square of a tile's light, which minimises the variance. It is the mean over samples, with the mean over all regions as
-//! prior. Estimates are unbiased, because some samples are by flux alone.
+//! Deviations: the visibility is learned once, before any sample is taken. Probabilities are in proportion to the root
+//! mean square of a tile's light, which minimises the variance. It is the mean over samples, with the mean over all
+//! regions as prior. Estimates are unbiased, because some samples are by flux alone.
 
 use super::table::TileTable;
 use super::tiles::Tile;
@@ -26,8 +26,8 @@ const PRIOR: f32 = 1.0;
 pub struct SkyObservations {
     /// Positions of the points.
     pub points: Vec<Vec3>,
-    /// Tiles to which the rays of each point in turn were traced, and the light that arrived relative to the tile's; 0 for
-    /// occluded rays. Every point has the same number of rays.
+    /// Tiles to which the rays of each point in turn were traced, and the light that arrived relative to the tile's; 0
+    /// for occluded rays. Every point has the same number of rays.
     pub rays: Vec<(u16, f32)>,
 }
 

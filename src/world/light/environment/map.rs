@@ -1,8 +1,8 @@
 //! Cells of an environment map: the squares between four texels. The first and last rows of texels lie at the poles.
 //!
-//! Radiance is bilinear in a cell. A cell is sampled by the mean luminance of its corners times its solid angle, and a point
-//! in it by the bilinear luminance. So the density is proportional to radiance up to the variation of the sine of the
-//! latitude over one row, and a sun of one texel adds no variance.
+//! Radiance is bilinear in a cell. A cell is sampled by the mean luminance of its corners times its solid angle, and a
+//! point in it by the bilinear luminance. So the density is proportional to radiance up to the variation of the sine of
+//! the latitude over one row, and a sun of one texel adds no variance.
 
 use super::tiles::Grid;
 use crate::light::DiscreteDistribution;
@@ -108,7 +108,8 @@ impl Map {
         self.towards(sin_theta, cos_theta, column as f32 + f.x)
     }
 
-    /// Returns the unit world direction at height `z` above the horizon and `x` cells from the first column's left edge.
+    /// Returns the unit world direction at height `z` above the horizon and `x` cells from the first column's left
+    /// edge.
     #[inline]
     pub fn direction_at(&self, z: f32, x: f32) -> Vec3 {
         self.towards((1.0 - z * z).max(0.0).sqrt(), z, x)
@@ -134,8 +135,8 @@ impl Map {
         self.texels(column, row).map(|i| self.map.radiance[i])
     }
 
-    /// Returns [`Map::corners`] at points in the lanes of `wanted`. The reads have loops of their own, which are short enough
-    /// for the processor to look ahead over all lanes, because a large map exceeds the caches.
+    /// Returns [`Map::corners`] at points in the lanes of `wanted`. The reads have loops of their own, which are short
+    /// enough for the processor to look ahead over all lanes, because a large map exceeds the caches.
     #[inline]
     pub fn corners16(&self, points: &[CellPoint; LANES], wanted: u16) -> [Corners; LANES] {
         let (mut texels, mut corners) = ([[0; 4]; LANES], [Corners::default(); LANES]);

@@ -1,7 +1,7 @@
 //! Light from infinitely far away: evaluation and sampling, about in proportion to radiance or as [`LearnedSky`] tells.
 //!
-//! A tile of about average flux is sampled first, then a direction within the tile. A distant disc, such as the sun, is a
-//! tile of its own in front of the others. It hides nothing: radiances and densities add up.
+//! A tile of about average flux is sampled first, then a direction within the tile. A distant disc, such as the sun, is
+//! a tile of its own in front of the others. It hides nothing: radiances and densities add up.
 
 mod discs;
 mod equal_cells;
@@ -127,8 +127,8 @@ impl EnvironmentLight {
         self.radiance_pdf16(&Vec3x16::splat(d), 1, None)[0]
     }
 
-    /// Returns [`EnvironmentLight::radiance_pdf`] in the lanes of `wanted`. The lanes wait for memory together, because a
-    /// large map exceeds the caches.
+    /// Returns [`EnvironmentLight::radiance_pdf`] in the lanes of `wanted`. The lanes wait for memory together, because
+    /// a large map exceeds the caches.
     pub fn radiance_pdf16(&self, d: &Vec3x16, wanted: u16, learned: LearnedAt) -> [(Rgb, f32); LANES] {
         let mut found = self.source_radiance_pdf16(d, wanted, learned);
         if !self.discs.is_empty() {
@@ -237,7 +237,8 @@ impl EnvironmentLight {
         self.tiles.all()[tile].flux
     }
 
-    /// Samples a direction of a tile alone: discs add nothing to the tiles behind them. The density is that within the tile.
+    /// Samples a direction of a tile alone: discs add nothing to the tiles behind them. The density is that within the
+    /// tile.
     pub fn sample_of_tile(&self, tile: usize, u: Vec2) -> Option<EnvironmentSample> {
         let mut chosen = [TileSample::default(); LANES];
         chosen[0] = TileSample { tile, u, density: self.tiles.all()[tile].density };

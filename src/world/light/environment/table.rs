@@ -19,8 +19,8 @@ pub(super) struct TileTable {
 }
 
 impl TileTable {
-    /// Builds a distribution in proportion to `weights`, mixed with a share `by_flux` of the distribution by flux; by flux
-    /// alone if no weight is positive.
+    /// Builds a distribution in proportion to `weights`, mixed with a share `by_flux` of the distribution by flux; by
+    /// flux alone if no weight is positive.
     pub fn new(tiles: &[Tile], weights: &[f32], by_flux: f32) -> TileTable {
         let total: f32 = weights.iter().sum();
         let usable = total > 0.0 && total.is_finite();

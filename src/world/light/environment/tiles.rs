@@ -1,8 +1,8 @@
 //! Tiles of the sphere of directions, of about equal flux.
 //!
-//! Directions are sampled uniformly in tiles of about constant radiance. In other tiles a block of cells is sampled first,
-//! then a direction in it, uniformly if its radiance is about constant. The tables of cells exceed the caches, and reading
-//! them takes longer than the shadow ray.
+//! Directions are sampled uniformly in tiles of about constant radiance. In other tiles a block of cells is sampled
+//! first, then a direction in it, uniformly if its radiance is about constant. The tables of cells exceed the caches,
+//! and reading them takes longer than the shadow ray.
 
 use crate::light::DiscreteDistribution;
 use glam::Vec2;
@@ -16,8 +16,8 @@ const MAX_TILES: usize = 256;
 /// Maximum number of blocks of cells along an edge. Tiles consist of whole blocks.
 const MAX_BLOCKS: usize = 256;
 
-/// Maximum squared coefficient of variation of the radiance in an even tile or block, which is the relative variance that
-/// it adds to an estimate.
+/// Maximum squared coefficient of variation of the radiance in an even tile or block, which is the relative variance
+/// that it adds to an estimate.
 const EVEN: f64 = 0.03;
 
 /// Grid of cells over the sphere of directions. Columns have equal azimuths, and rows lie between two heights.
@@ -45,8 +45,8 @@ pub(super) struct Tile {
     pub heights: [f32; 2],
     /// Share of all flux.
     pub flux: f32,
-    /// Density per solid angle of directions in the tile, if it is even; else the factor that turns densities among all cells
-    /// into densities in the tile.
+    /// Density per solid angle of directions in the tile, if it is even; else the factor that turns densities among all
+    /// cells into densities in the tile.
     pub density: f32,
 }
 
@@ -251,8 +251,8 @@ impl Tile {
         }
     }
 
-    /// Samples a point uniformly by solid angle. Returns its height, and the number of cells from the first column's left
-    /// edge.
+    /// Samples a point uniformly by solid angle. Returns its height, and the number of cells from the first column's
+    /// left edge.
     #[inline]
     pub fn place(&self, u: Vec2) -> (f32, f32) {
         let z = self.heights[0] + (self.heights[1] - self.heights[0]) * u.y;

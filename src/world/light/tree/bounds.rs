@@ -89,8 +89,8 @@ impl EmitterBounds {
         }
     }
 
-    /// Returns the cost of sampling the set as one: power times the extents of positions and directions (Conty Estevez &
-    /// Kulla 2018, section 4.4, with the squared diagonal instead of the surface area).
+    /// Returns the cost of sampling the set as one: power times the extents of positions and directions (Conty Estevez
+    /// & Kulla 2018, section 4.4, with the squared diagonal instead of the surface area).
     pub fn cost(&self) -> f32 {
         self.power * self.cone.measure() * self.low.distance_squared(self.high)
     }

@@ -48,8 +48,8 @@ impl Branch {
         branch
     }
 
-    /// Returns the weights of the children at a point; zero for children that cannot light it. `factors` are learned factors
-    /// on their importance.
+    /// Returns the weights of the children at a point; zero for children that cannot light it. `factors` are learned
+    /// factors on their importance.
     #[inline(always)]
     fn weights(&self, at: PointAndNormal, factors: Option<&[f32]>) -> [f32; ARITY] {
         let mut weights = [0.0; ARITY];
@@ -77,7 +77,8 @@ impl Branch {
         weights
     }
 
-    /// Chooses a child. Returns the child, its probability, and `u` rescaled within it; `None` if no child lights the point.
+    /// Chooses a child. Returns the child, its probability, and `u` rescaled within it; `None` if no child lights the
+    /// point.
     #[inline]
     pub fn sample(
         &self,

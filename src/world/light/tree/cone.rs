@@ -3,8 +3,8 @@
 use glam::Vec3;
 use std::f32::consts::{FRAC_PI_2, PI};
 
-/// Directions into which a set of emitters emits: within the angle `emission` of normals that lie within `normals` of the
-/// axis.
+/// Directions into which a set of emitters emits: within the angle `emission` of normals that lie within `normals` of
+/// the axis.
 #[derive(Clone, Copy, Debug)]
 pub struct EmissionCone {
     /// Unit axis of the normals.

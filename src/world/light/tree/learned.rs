@@ -1,11 +1,11 @@
-//! Visibility of emitters from each region of the scene, learned from free and occluded rays. In a building with many rooms
-//! most emitters are occluded, and samples of them are wasted.
+//! Visibility of emitters from each region of the scene, learned from free and occluded rays. In a building with many
+//! rooms most emitters are occluded, and samples of them are wasted.
 //!
 //! Paper: Vévoda, Kondapaneni & Křivánek, *Bayesian online regression for adaptive direct illumination sampling*, 2018.
 //!
-//! Deviations: the visibility is learned once, before any sample is taken, by rays to emitters that are chosen without it.
-//! For each node of the emitter tree it is the share of free rays, with the parent's share as prior. The importance of a
-//! node is multiplied by the root of the share, which minimises the variance if nodes are wholly visible or wholly
+//! Deviations: the visibility is learned once, before any sample is taken, by rays to emitters that are chosen without
+//! it. For each node of the emitter tree it is the share of free rays, with the parent's share as prior. The importance
+//! of a node is multiplied by the root of the share, which minimises the variance if nodes are wholly visible or wholly
 //! occluded. Estimates are unbiased, because no factor is 0.
 
 use super::EmitterTree;

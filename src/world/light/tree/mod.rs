@@ -3,10 +3,10 @@
 //! Papers: Conty Estevez & Kulla, *Importance Sampling of Many Lights with Adaptive Tree Splitting*, 2018; Yuksel,
 //! *Stochastic Lightcuts*, 2019.
 //!
-//! Deviations: the choice starts among the nodes of a cut (all emitters, if there are few), which are weighted at sixteen
-//! points at once, and continues through branches of up to eight children. Part of the choice is by power, as a safeguard
-//! against poor estimates. Directional lights are represented by distant points. The angle that a node subtends enters by
-//! its sine alone, which bounds the cosines and saves roots.
+//! Deviations: the choice starts among the nodes of a cut (all emitters, if there are few), which are weighted at
+//! sixteen points at once, and continues through branches of up to eight children. Part of the choice is by power, as a
+//! safeguard against poor estimates. Directional lights are represented by distant points. The angle that a node
+//! subtends enters by its sine alone, which bounds the cosines and saves roots.
 
 mod bounds;
 mod branch;
@@ -49,8 +49,9 @@ enum TreePlace {
 }
 
 impl EmitterTree {
-    /// Builds the tree with a cut of at most `top` nodes. The diagonals are those of all surfaces and of the extent that
-    /// determines the precision of positions ([`scene::Scene::extent`]). Returns the tree and the powers of the cut's nodes.
+    /// Builds the tree with a cut of at most `top` nodes. The diagonals are those of all surfaces and of the extent
+    /// that determines the precision of positions ([`scene::Scene::extent`]). Returns the tree and the powers of the
+    /// cut's nodes.
     pub fn new(
         areas: &[AreaLight],
         deltas: &[DeltaLight],
@@ -115,8 +116,8 @@ impl EmitterTree {
         self.top.len()
     }
 
-    /// Chooses an emitter below node `top` of the cut. Returns the emitter and its probability below that node; `None` if
-    /// no emitter lights the point.
+    /// Chooses an emitter below node `top` of the cut. Returns the emitter and its probability below that node; `None`
+    /// if no emitter lights the point.
     #[inline]
     pub fn sample(
         &self,

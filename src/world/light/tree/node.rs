@@ -63,16 +63,16 @@ impl EmitterNode {
         }
     }
 
-    /// Estimates π times the irradiance at a point; zero only if no emitter of the node can light that side (Conty Estevez &
-    /// Kulla 2018, equation 3, with a bound of the cosine at the surface).
+    /// Estimates π times the irradiance at a point; zero only if no emitter of the node can light that side (Conty
+    /// Estevez & Kulla 2018, equation 3, with a bound of the cosine at the surface).
     #[inline(always)]
     pub fn importance(&self, PointAndNormal { x, n }: PointAndNormal) -> f32 {
         let to_light = self.centre - x;
         let radius_sq = self.radius * self.radius;
         let dist_sq = to_light.length_squared().max(MIN_DIST_SQ * radius_sq).max(f32::MIN_POSITIVE);
         let dist = dist_sq.sqrt();
-        // Cosines are scaled by the distance. The cosine of an angle minus the angle that the sphere subtends is at most the
-        // cosine of the angle plus the sine of the other, which is the radius over the distance.
+        // Cosines are scaled by the distance. The cosine of an angle minus the angle that the sphere subtends is at
+        // most the cosine of the angle plus the sine of the other, which is the radius over the distance.
         let surface = n.dot(to_light) + self.radius;
         let cos_axis = -self.axis.dot(to_light);
         let sin_axis = (dist_sq - cos_axis * cos_axis).max(0.0).sqrt();

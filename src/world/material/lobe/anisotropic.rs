@@ -4,9 +4,9 @@
 //! Density, masking and sampling follow from that distribution ([`Microfacets`]). Local x is along u.
 //!
 //! Paper: E. Heitz, *Understanding the Masking-Shadowing Function in Microfacet-Based BRDFs*, 2014, section 5.3.
-//! Deviations: eye paths follow the lobe for any roughness, because virtual lights and series do not support a direction on
-//! the surface. The bounds use the larger roughness for the density and the smaller one for masking. The albedo is the mean
-//! over azimuths.
+//! Deviations: eye paths follow the lobe for any roughness, because virtual lights and series do not support a
+//! direction on the surface. The bounds use the larger roughness for the density and the smaller one for masking. The
+//! albedo is the mean over azimuths.
 
 use super::{DirectionBound, Directions, Directions16, FacetBound, FacetBounds16, LobeLanes, mean};
 use crate::material::fresnel::Curve;
@@ -21,8 +21,8 @@ use std::sync::Arc;
 /// Number of azimuths in a quarter of the circle over which the albedo is averaged.
 const AZIMUTHS: usize = 4;
 
-/// Factor by which masking may exceed that of the smaller roughness, because Walter's fit of Beckmann's masking exceeds 1
-/// by 7e-5.
+/// Factor by which masking may exceed that of the smaller roughness, because Walter's fit of Beckmann's masking exceeds
+/// 1 by 7e-5.
 const OVERSHOOT: f32 = 1.0001;
 
 /// Anisotropic lobe without its factor. Lobes are equal if roughness and Fresnel reflectance are.

@@ -1,7 +1,8 @@
 //! Second specular lobe of the principled material: facets of Burley's distribution GTR1 under a clear varnish.
 //!
-//! Paper: B. Burley, *Physically Based Shading at Disney*, 2012, section 5.6 and appendix B. As in the paper and in Mitsuba
-//! 3, there is no division by the cosines, masking is that of α = 0.25, and a factor of 1 gives a quarter of the light.
+//! Paper: B. Burley, *Physically Based Shading at Disney*, 2012, section 5.6 and appendix B. As in the paper and in
+//! Mitsuba 3, there is no division by the cosines, masking is that of α = 0.25, and a factor of 1 gives a quarter of
+//! the light.
 //! Deviations: the Fresnel reflectance is Schlick's for an index of 1.5, for every material.
 
 use super::{DirectionBound, Directions, Directions16, FacetBound, FacetBounds16, LobeLanes, mean};

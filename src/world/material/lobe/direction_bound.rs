@@ -2,8 +2,8 @@
 
 use base::math::F32x16;
 
-/// Bounds of a set of directions towards light. The normal is on the side of `wo`: it is the reversed shading normal if a
-/// two-sided surface is seen from behind.
+/// Bounds of a set of directions towards light. The normal is on the side of `wo`: it is the reversed shading normal if
+/// a two-sided surface is seen from behind.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DirectionBound {
     /// Maximum cosine to the normal. If it is <= 0, nothing is reflected.

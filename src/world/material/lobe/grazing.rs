@@ -1,5 +1,5 @@
-//! Broad scattering at grazing angles: retroreflection of rough diffuse surfaces and sheen of fibres, for the principled
-//! material.
+//! Broad scattering at grazing angles: retroreflection of rough diffuse surfaces and sheen of fibres, for the
+//! principled material.
 //!
 //! Paper: B. Burley, *Extending the Disney BRDF to a BSDF with Integrated Subsurface Scattering*, 2015, equation 4;
 //! *Physically Based Shading at Disney*, 2012, section 5.2.
@@ -40,9 +40,9 @@ impl PartialEq for Grazing {
 }
 
 impl GrazingKind {
-    /// Returns the value in 1/sr from the weights of Schlick's approximation for both directions and the cosine between either
-    /// direction and the half-way normal. The value grows with both weights. It grows with the cosine for retroreflection and
-    /// falls for sheen.
+    /// Returns the value in 1/sr from the weights of Schlick's approximation for both directions and the cosine between
+    /// either direction and the half-way normal. The value grows with both weights. It grows with the cosine for
+    /// retroreflection and falls for sheen.
     #[inline]
     fn value(self, [out, into]: [f32; 2], cos_d: f32) -> f32 {
         match self {

@@ -1,10 +1,10 @@
 //! Two directions and the facet normal half-way between them, and bounds of that normal for a set of directions.
 //!
-//! With c = cos θ_i and m = wi · (mirror direction of wo), wo · wi = 2 cos θ_o c - m. So the half-way normal h has
-//! cos² θ_h = (cos θ_o + c)² / (2 + 4 cos θ_o c - 2 m) and cos² (wo, h) = (1 + 2 cos θ_o c - m) / 2. The first grows with m
+//! With c = cos θ_i and m = wi · (mirror direction of wo), wo · wi = 2 cos θ_o c - m. So the half-way normal h has cos²
+//! θ_h = (cos θ_o + c)² / (2 + 4 cos θ_o c - 2 m) and cos² (wo, h) = (1 + 2 cos θ_o c - m) / 2. The first grows with m
 //! and has no maximum in c between the ends of its range. The second is least at the smallest c and the largest m.
-//! Independently of c, the angle between n and h is at least half that between wi and the mirror direction, and the angle
-//! between wo and h is at most half the sum of the two inclinations.
+//! Independently of c, the angle between n and h is at least half that between wi and the mirror direction, and the
+//! angle between wo and h is at most half the sum of the two inclinations.
 
 use super::{DirectionBound, DirectionBounds16};
 use base::math::{F32x16, LANES, Vec3x16};

@@ -1,5 +1,6 @@
-//! Lobes: the scattering of a surface besides its Lambertian base. One file per lobe holds everything about it: value and
-//! sampling density, sampling, albedo, the upper bound for clusters of lights, and value and bound in sixteen lanes.
+//! Lobes: the scattering of a surface besides its Lambertian base. One file per lobe holds everything about it: value
+//! and sampling density, sampling, albedo, the upper bound for clusters of lights, and value and bound in sixteen
+//! lanes.
 //!
 //! A [`LobeModel`] is the part of a lobe that all points of a material share. The factor on the lobe, which may be
 //! textured, comes with each call as `scale`. The dispatch in `model.rs` is the only code that enumerates the lobes.

@@ -75,9 +75,9 @@ impl LobeModel {
         }
     }
 
-    /// Returns true if eye paths follow the lobe by sampling it, as they follow a mirror: lightcuts would show single virtual
-    /// lights in it. Eye paths also follow lobes that scatter light across the surface, because cuts gather on one side, and
-    /// anisotropic lobes, because cuts do not support a direction on the surface.
+    /// Returns true if eye paths follow the lobe by sampling it, as they follow a mirror: lightcuts would show single
+    /// virtual lights in it. Eye paths also follow lobes that scatter light across the surface, because cuts gather on
+    /// one side, and anisotropic lobes, because cuts do not support a direction on the surface.
     #[inline]
     pub fn is_sharp(&self) -> bool {
         match self {
@@ -87,8 +87,8 @@ impl LobeModel {
         }
     }
 
-    /// Returns the index of refraction on the far side over that on the side of `wo` for a rough lobe that refracts; 1 for
-    /// other lobes.
+    /// Returns the index of refraction on the far side over that on the side of `wo` for a rough lobe that refracts; 1
+    /// for other lobes.
     #[inline]
     pub fn refraction(&self, wo: Vec3) -> f32 {
         match self {
@@ -175,8 +175,8 @@ impl LobeModel {
         }
     }
 
-    /// Returns the light that a virtual light radiates by the lobe, for light at the cosine `cos` > 0, if the lobe is wide
-    /// enough for one and reflects too much to count as diffuse.
+    /// Returns the light that a virtual light radiates by the lobe, for light at the cosine `cos` > 0, if the lobe is
+    /// wide enough for one and reflects too much to count as diffuse.
     #[inline]
     pub fn reflected(&self, scale: Rgb, cos: f32) -> Option<ReflectedLobe> {
         match self {

@@ -1,8 +1,8 @@
 //! Reflection by isotropic microfacets.
 //!
-//! The value is F D V1(wo) V1(wi), the density of sampling visible normals D V1(wo) / 2 (see [`Microfacets`]). The bound takes
-//! the maxima of D and of the Fresnel reflectance F over the half-way normals that a set of directions allows
-//! ([`FacetBound`]). Masking times cosine grows with the cosine.
+//! The value is F D V1(wo) V1(wi), the density of sampling visible normals D V1(wo) / 2 (see [`Microfacets`]). The
+//! bound takes the maxima of D and of the Fresnel reflectance F over the half-way normals that a set of directions
+//! allows ([`FacetBound`]). Masking times cosine grows with the cosine.
 //!
 //! Paper: Walter et al., *Lightcuts*, 2005, section 4.1 (bounds).
 //! Deviations: single scattering only; masked light is lost.
@@ -25,8 +25,8 @@ pub(in crate::material) const DIFFUSE_ALPHA: f32 = 0.25;
 /// Maximum reflectance at normal incidence of lobes that count as diffuse in virtual lights.
 const DIFFUSE_REFLECTANCE: f32 = 0.1;
 
-/// Maximum roughness α of lobes that eye paths follow like mirrors, because each virtual light would show as a highlight
-/// in them.
+/// Maximum roughness α of lobes that eye paths follow like mirrors, because each virtual light would show as a
+/// highlight in them.
 const SHARP_ALPHA: f32 = 0.1;
 
 /// Rough reflection lobe without its factor. Lobes are equal if roughness and Fresnel reflectance are.

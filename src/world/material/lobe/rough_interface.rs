@@ -1,8 +1,8 @@
 //! Reflection and refraction by the facets of a rough dielectric interface: two lobes, each with its factor.
 //!
 //! Paper: Walter et al., *Microfacet Models for Refraction through Rough Surfaces*, 2007, equations 20 and 21.
-//! Deviations: single scattering only. There is no bound, because lightcuts gather on one side: eye paths follow these lobes
-//! for any roughness.
+//! Deviations: single scattering only. There is no bound, because lightcuts gather on one side: eye paths follow these
+//! lobes for any roughness.
 
 use super::interface::Passage;
 use super::{Directions, mean};

@@ -1,7 +1,7 @@
 //! Directional distribution of the light that a rough lobe reflects from one direction, for virtual lights.
 //!
-//! The intensity in direction ω for light from ωi is proportional to D(h) V1(ω) cos θ with the half-way normal h. The maxima
-//! of D and of V1 cos θ = G1 / 2 bound it.
+//! The intensity in direction ω for light from ωi is proportional to D(h) V1(ω) cos θ with the half-way normal h. The
+//! maxima of D and of V1 cos θ = G1 / 2 bound it.
 //!
 //! Paper: Walter et al., *Microfacet Models for Refraction through Rough Surfaces*, 2007.
 //! Deviations: the Fresnel reflectance is that of the whole lobe and does not depend on the direction.
@@ -26,8 +26,8 @@ impl LobeShape {
         LobeShape { facets, inv_bound: 1.0 / bound }
     }
 
-    /// Returns the intensity in the unit direction `away` for light from the unit vector `towards_light`, relative to the
-    /// bound, in 0..=1; 0 below the horizon.
+    /// Returns the intensity in the unit direction `away` for light from the unit vector `towards_light`, relative to
+    /// the bound, in 0..=1; 0 below the horizon.
     #[inline]
     pub fn share(&self, normal: Vec3, towards_light: Vec3, away: Vec3) -> f32 {
         let cos = normal.dot(away);
@@ -74,8 +74,8 @@ impl LobeShape {
             * if self.facets.distribution == Distribution::Ggx { 1.0 } else { 2.0 }
     }
 
-    /// Returns an upper bound of the share at a cosine to the mirror direction of the light, for lobes of at most the given
-    /// squared width. Facets are inclined by at least half the angle to the mirror direction.
+    /// Returns an upper bound of the share at a cosine to the mirror direction of the light, for lobes of at most the
+    /// given squared width. Facets are inclined by at least half the angle to the mirror direction.
     #[inline(always)]
     pub fn max_share(cos_mirror: f32, width_sq: f32) -> f32 {
         let sin_sq = 0.5 * (1.0 - cos_mirror);
@@ -84,8 +84,8 @@ impl LobeShape {
         1.0 / (t * t)
     }
 
-    /// Returns the bound as intensity over reflected flux, 1/sr, for light at `cos`. `white` is the albedo of facets that
-    /// absorb nothing.
+    /// Returns the bound as intensity over reflected flux, 1/sr, for light at `cos`. `white` is the albedo of facets
+    /// that absorb nothing.
     pub(super) fn peak(&self, cos: f32, white: f32) -> f32 {
         self.facets.v1(cos) / (self.inv_bound * white)
     }

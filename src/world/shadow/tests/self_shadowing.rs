@@ -93,8 +93,8 @@ impl Solid {
         directions.iter().filter_map(seen).collect()
     }
 
-    /// Returns true if `q` lies behind all faces but those of this normal, by more than rounding: closer to an edge, rays may
-    /// pass beside it or start beyond it.
+    /// Returns true if `q` lies behind all faces but those of this normal, by more than rounding: closer to an edge,
+    /// rays may pass beside it or start beyond it.
     fn holds(&self, q: DVec3, normal: Vec3) -> bool {
         let rounding = 5e-7 * q.abs().max_element();
         self.triangles.iter().all(|triangle| {
