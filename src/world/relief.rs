@@ -117,7 +117,7 @@ mod tests {
         Camera, Distribution, Filter, Fresnel, Lobe, Material, Principled, Relief, Texture, TextureId, Wrap,
     };
 
-    /// A square from 0 to 2 in the plane z = 0, u from 0 to 1 along x and v along y, and its relief.
+    /// Builds a square with a relief, from 0 to 2 in the plane z = 0. The coordinate u is along x, v along y.
     fn square(relief: Relief, width: usize, texels: Vec<Rgb>) -> WorldAndView {
         let mut scene = scene(Camera::default(), [1, 1]);
         let texture = texture(width, &texels);
@@ -128,7 +128,7 @@ mod tests {
         world(scene)
     }
 
-    /// Shading normal at (x, y), the same from a packet of hits.
+    /// Returns the shading normal at (x, y), and checks that a packet of hits has the same.
     fn normal(world: &WorldAndView, x: f32, y: f32) -> Vec3 {
         let ray = Ray::new(Vec3::new(x, y, 1.0), -Vec3::Z);
         let surface = world.intersect(&ray).expect("the square");

@@ -154,7 +154,7 @@ mod tests {
     use crate::testkit::*;
     use scene::{Camera, Material, Parameter};
 
-    /// Sheets of all kinds, flat and curved, textured and not, some of which lie in others.
+    /// Builds sheets of all kinds, flat and curved, textured and not, some of which intersect.
     fn curtains() -> WorldAndView {
         let mut scene = scene(Camera::default(), [1, 1]);
         let checker =
@@ -176,7 +176,7 @@ mod tests {
         world(scene)
     }
 
-    /// The same by a query for each sheet.
+    /// Returns the transmittance of a segment, by one query per sheet.
     fn one_by_one(world: &World, segment: &Ray) -> Rgb {
         let (mut transmittance, mut rest) = (Rgb::ONE, *segment);
         while let Some(surface) = world.intersect(&rest) {

@@ -7,7 +7,7 @@ use embree::{Hit, Hits16, TriangleId};
 use glam::{Vec2, Vec3};
 use scene::{MaterialId, Mesh, Scene};
 
-/// A triangle in the plane z = 2 whose front is below, and a tiny one.
+/// Builds a triangle in the plane z = 2 whose front faces down, and a tiny triangle.
 fn world(normals: Vec<Vec3>) -> World {
     let mesh = |positions, normals| Mesh {
         name: String::new(),
@@ -24,7 +24,7 @@ fn world(normals: Vec<Vec3>) -> World {
     World::new(Scene { meshes, materials: vec![diffuse(Rgb::ONE)], ..Scene::default() }, 1).expect("a world")
 }
 
-/// The hit of a ray straight up at (x, y).
+/// Returns the hit of a ray straight up at (x, y).
 fn above(world: &World, x: f32, y: f32) -> Option<Surface> {
     world.intersect(&Ray { origin: Vec3::new(x, y, 0.5), t_near: 0.0, direction: Vec3::Z * 0.5, t_far: 9.0 })
 }

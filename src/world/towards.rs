@@ -169,7 +169,7 @@ mod tests {
         ];
         let boxes = Boxes16::new(&boxes);
         let faces = boxes.faces(Vec3::ZERO, Vec3::Y);
-        // Means of functions of direction over directions drawn, and over the sphere by their density.
+        // Means of functions over sampled directions must equal those over the sphere, weighted by the density.
         let functions = [|_: Vec3| 1.0, |d: Vec3| d.x * d.x, |d: Vec3| (d.z + 0.3) * d.y];
         let count = 1 << 16;
         let (mut drawn, mut whole, mut missed) = ([0.0f64; 3], [0.0f64; 3], 0);
@@ -190,7 +190,7 @@ mod tests {
         for (drawn, whole) in drawn.iter().zip(whole) {
             assert!((drawn - whole).abs() < 0.01, "{drawn} {whole}");
         }
-        // The third box is below the horizon; all are from inside one of them.
+        // The third box is below the horizon. No box has a front face from its inside.
         assert_eq!(faces.density(-Vec3::Y), Some(0.0));
         let inside = boxes.faces(Vec3::new(0.0, -8.5, 0.0), -Vec3::Y);
         assert!(inside.towards(0.5, Vec2::splat(0.5)).is_none() && inside.density(Vec3::X).is_none());

@@ -99,7 +99,7 @@ mod tests {
     use crate::texture::{Filter, Texels, Wrap};
     use glam::Mat3;
 
-    /// 64 x 32 texels, black and white in turn, and red in the lower half.
+    /// Returns a checker of 64 × 32 texels, black and white in the upper half, black and red in the lower half.
     fn checker() -> Texture {
         let texel = |i: usize| match (i % 64 + i / 64) % 2 {
             0 => Rgb::ZERO,
@@ -118,13 +118,13 @@ mod tests {
         let maps = MipMaps::new(&vec![texture.clone()].into(), [TextureId(0)].into_iter());
         let levels: Vec<usize> = maps.pyramids[0].levels.iter().map(|level| level.texels.len()).collect();
         assert_eq!(levels, [512, 128, 32, 8, 2, 1]);
-        // A texel is a square of this side, in the mean: 128 by 32 of them a unit.
+        // A texel is a square of this side on average: there are 128 by 32 texels per unit.
         let texel = 1.0 / 64.0;
         let count = |covered: f32| maps.level(&texture, TextureId(0), covered * texel).texels.len();
         let found = [0.0, 0.9, 3.9, 4.1, 7.9, 8.1, 1e3, 1e30, f32::INFINITY].map(count);
         assert_eq!(found, [2048, 2048, 2048, 512, 512, 128, 1, 1, 1]);
         assert_eq!(count(f32::NAN), 2048);
-        // One that is not averaged.
+        // A texture without coarser versions.
         assert_eq!(maps.level(&texture, TextureId(7), 1e3).texels.len(), 2048);
     }
 

@@ -10,7 +10,8 @@ use std::f32::consts::PI;
 /// Numbers of emitters that are all candidates, and that are more than those.
 const COUNTS: [usize; 4] = [5, 32, 60, 400];
 
-/// Emitters of all kinds, of sizes and powers over orders of magnitude, in a cube of side 10, and an environment.
+/// Returns emitters of all kinds in a cube of side 10, whose sizes and powers span orders of magnitude, and an
+/// environment.
 fn scene(count: usize, seed: u32) -> Scene {
     let mut sampler = Sampler::new(seed, 0);
     let mut scene = Scene::default();
@@ -42,7 +43,7 @@ fn scene(count: usize, seed: u32) -> Scene {
     scene
 }
 
-/// Two triangles with an edge in common and an angle between them.
+/// Returns two emitting triangles with a common edge and an angle between them.
 fn lamp(position: Vec3, direction: Vec3, size: f32, radiance: Rgb, two_sided: bool) -> Mesh {
     let a = size * direction.any_orthonormal_vector();
     let b = direction.cross(a);
@@ -57,7 +58,7 @@ fn lamp(position: Vec3, direction: Vec3, size: f32, radiance: Rgb, two_sided: bo
     }
 }
 
-/// A point in or around the cube, near a lamp now and then, and a normal.
+/// Samples a point in or around the cube, near an emitter in some cases, and a normal.
 fn receiver(scene: &Scene, sampler: &mut Sampler) -> (Vec3, Vec3) {
     let (place, y) = (sampler.next_2d(), sampler.next_1d());
     let mut x = 14.0 * Vec3::new(place.x, y, place.y) - 7.0;
@@ -73,7 +74,7 @@ fn emitters(scene: &Scene) -> Emitters {
     Emitters::new(scene, 10.0 * 3f32.sqrt())
 }
 
-/// Knowledge that two of three lamps are hidden from all points of positive x.
+/// Returns the learned visibility if two of three emitters are hidden from all points of positive x.
 fn learned(emitters: &Emitters) -> Learned {
     let count = emitters.environment_index();
     let mut observations = EmitterObservations::default();
@@ -94,7 +95,7 @@ fn is_seen(lamp: usize, x: Vec3) -> bool {
     lamp.is_multiple_of(3) || x.x < 0.0
 }
 
-/// Probability of choosing each emitter at a point.
+/// Returns the probability of choosing each emitter at a point.
 fn probabilities(emitters: &Emitters, (x, n): (Vec3, Vec3), learned: Option<&Learned>) -> Vec<f32> {
     let (x, n) = (Vec3x16::splat(x), Vec3x16::splat(n));
     let at = Receivers16 { position: &x, normal: &n, learned };
@@ -102,7 +103,8 @@ fn probabilities(emitters: &Emitters, (x, n): (Vec3, Vec3), learned: Option<&Lea
     (0..=emitters.environment_index()).map(one).collect()
 }
 
-/// Irradiance by one emitter at a point, without occluders, by `steps` squared points; not zero where light arrives.
+/// Integrates the irradiance by one emitter at a point, without occluders, over `steps` squared points. The result is
+/// not zero if light arrives.
 fn irradiance(emitters: &Emitters, index: usize, (x, n): (Vec3, Vec3), steps: u32) -> f64 {
     if let Some(light) = emitters.areas.get(index) {
         let mut sum = 0.0;
@@ -282,7 +284,7 @@ fn rays_that_meet_a_lamp_are_never_said_to_miss_all_and_most_others_are() {
     let emitters = emitters(&scene);
     for _ in 0..rays {
         let (x, away) = receiver(&scene, &mut sampler);
-        // From up to a hundred times as far.
+        // The point moves up to a hundred times as far away.
         let x = x * 100f32.powf(sampler.next_1d());
         let lamp = &emitters.areas[(sampler.next_1d() * emitters.areas.len() as f32) as usize];
         let towards = (lamp.sample(sampler.next_2d()).position - x).normalize();

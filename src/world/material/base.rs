@@ -105,7 +105,7 @@ impl BaseModel {
         let (mean_transmittance, internal_reflectance) = match &interface {
             CoatInterface::None => (1.0, 0.0),
             CoatInterface::Burley => (1.0 - 1.0 / 42.0, 0.0),
-            // By reciprocity the mean transmittance outside follows from the reflectance inside. The fit inside
+            // The mean transmittance outside follows from the reflectance inside by reciprocity. The fit inside
             // determines the brightness of the base, so both come from it.
             CoatInterface::Smooth(eta) => {
                 let internal = fresnel::diffuse_reflectance(1.0 / eta);

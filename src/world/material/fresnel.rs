@@ -175,7 +175,7 @@ mod tests {
         assert!((normal.reflectance - 0.04).abs() < 1e-6);
         assert_eq!(interface(0.0, 1.5).reflectance, 1.0);
         assert_eq!(interface(0.3, 1.0).reflectance, 0.0);
-        // From inside, beyond the critical angle.
+        // The ray comes from inside, beyond the critical angle.
         assert_eq!(interface(-0.5, 1.5).reflectance, 1.0);
         // Stokes: the same share either way along one path.
         let i = interface(0.6, 1.5);

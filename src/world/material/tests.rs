@@ -62,7 +62,7 @@ fn rough_conductor(distribution: Distribution, alpha: f32, scale: Rgb) -> Materi
     material(&name, Rgb::ZERO, None, lobe)
 }
 
-/// Metal that is rougher along x.
+/// Returns a metal whose roughness differs along x and y.
 fn brushed(distribution: Distribution, alpha: [f32; 2]) -> Material {
     let scale = constant(Rgb::new(0.9, 0.8, 0.7));
     let lobe = Lobe::Anisotropic { distribution, alpha, fresnel: GOLD, scale };
@@ -103,7 +103,7 @@ fn principled(name: &str, parameters: Principled) -> Material {
     Material { name: name.into(), principled: Some(Box::new(parameters)), ..Material::default() }
 }
 
-/// Principled materials of every kind that does not transmit light.
+/// Returns principled materials of every kind that does not transmit light.
 fn principled_materials() -> Vec<Material> {
     let of = |metallic: f32, roughness: f32| Principled {
         metallic: metallic.into(),
@@ -137,7 +137,7 @@ fn label(distribution: Distribution) -> &'static str {
     }
 }
 
-/// Every kind of material that has a smooth part, over the range of roughnesses.
+/// Returns every kind of material that has a smooth part, over the range of roughnesses.
 fn smooth_materials() -> Vec<Material> {
     let mut all = vec![lambert(PAINT), plastic(false), plastic(true)];
     for distribution in [Distribution::Ggx, Distribution::Beckmann] {
@@ -167,19 +167,19 @@ fn smooth_materials() -> Vec<Material> {
     all
 }
 
-/// The mixture of two, `weight` the share of the second.
+/// Returns the mixture of two materials; `weight` is the share of the second.
 fn blend(weight: f32, first: Material, other: Material) -> Material {
     let name = format!("{} and {}", first.name, other.name);
     let (weight, lobes) = (weight.into(), first.lobes.clone());
     Material { name, lobes, blend: Some(Box::new(Blend { weight, other })), ..first }
 }
 
-/// The material on a share of the surface.
+/// Returns the material on a share of the surface, with gaps between.
 fn masked(opacity: f32, material: Material) -> Material {
     Material { opacity: Some(opacity.into()), ..material }
 }
 
-/// Base and three lobes: a sharp one, a wide one, and a mirror.
+/// Returns a material of a base and three lobes: a sharp lobe, a wide lobe and a mirror.
 fn layered() -> Material {
     let rough = |alpha, fresnel, scale| {
         let scale = constant(scale);
@@ -191,7 +191,7 @@ fn layered() -> Material {
     Material { name: "layered".into(), diffuse: constant(PAINT * 0.3), lobes, ..Material::default() }
 }
 
-/// Minimum roughness of the rough lobes; infinite without any.
+/// Returns the minimum roughness of the rough lobes; infinity if there are none.
 fn min_alpha(material: &Material) -> f32 {
     if let Some(principled) = &material.principled {
         return if principled.clearcoat == 0.0.into() { 0.16 } else { 0.07 };
@@ -219,13 +219,13 @@ impl Random {
         Vec2::new(self.next(), self.next())
     }
 
-    /// Uniform on the upper hemisphere.
+    /// Samples the upper hemisphere uniformly.
     fn hemisphere(&mut self) -> Vec3 {
         direction(self.next().acos(), self.next() * std::f32::consts::TAU)
     }
 }
 
-/// Unit vector at inclination `theta` and azimuth `phi`.
+/// Returns the unit vector at inclination `theta` and azimuth `phi`.
 fn direction(theta: f32, phi: f32) -> Vec3 {
     Vec3::new(theta.sin() * phi.cos(), theta.sin() * phi.sin(), theta.cos())
 }

@@ -24,9 +24,9 @@ const ROWS: usize = 11;
 settings! {
     /// Size of a cache.
     pub struct OccluderCacheSettings in "Lightcuts" {
-        /// Slots of that cache, rounded up to a power of two.
+        /// Number of slots of the occluder cache, rounded up to a power of two.
         slots: usize = 4096 => [.named("occluder_slots").range(1.0, 1048576.0)];
-        /// Occluders in a slot, rounded up to 1, 2, 4 or 8.
+        /// Number of occluders per slot, rounded up to 1, 2, 4 or 8.
         ways: usize = 4 => [.named("occluder_ways").range(1.0, 8.0)];
     }
 }

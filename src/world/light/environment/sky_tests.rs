@@ -47,7 +47,7 @@ fn read(name: &str, text: &str) -> Scene {
     load(&path, &LoadOptions::default()).unwrap().scene
 }
 
-/// The light of an emitter of Mitsuba 3 with a direction of the sun at a height, and other values.
+/// Returns the environment of a Mitsuba 3 emitter with the sun at a height, and other values.
 fn sunsky(height: f32, more: &str) -> EnvironmentLight {
     let (sin, cos) = height.to_radians().sin_cos();
     let scene = read(

@@ -14,7 +14,7 @@ fn map() -> EnvironmentMap {
     EnvironmentMap { width, height, radiance, to_local: Mat3::from_rotation_y(0.7) }
 }
 
-/// An even part beside one of texels that differ.
+/// Returns a map with a constant part and a part of varying texels.
 fn two_parts() -> EnvironmentMap {
     let (width, height) = (256, 160);
     let texel = |i: usize| if i % width < 80 { 1.0 } else { 0.1 + (i * 37 % 11) as f32 * 0.3 };
@@ -22,7 +22,7 @@ fn two_parts() -> EnvironmentMap {
     EnvironmentMap { width, height, radiance, to_local: Mat3::from_rotation_y(0.7) }
 }
 
-/// A gradient that is even over blocks of some cells, not over tiles, and a part of texels that differ.
+/// Returns a map with a gradient that is about constant over blocks but not over tiles, and a part of varying texels.
 fn gradient() -> EnvironmentMap {
     let (width, height) = (700, 300);
     let texel = |i: usize| match (i % width, i / width) {

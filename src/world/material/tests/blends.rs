@@ -2,7 +2,7 @@
 
 use super::*;
 
-/// Pairs of materials whose bases are under the same coat, or of which one has none.
+/// Returns pairs of materials whose bases have the same coat, or of which one has no base.
 fn pairs() -> Vec<[Material; 2]> {
     let metal = || rough_conductor(Distribution::Ggx, 0.3, Rgb::ONE);
     let [plain, metal_too] = [0, 1].map(|i| principled_materials().swap_remove(i));

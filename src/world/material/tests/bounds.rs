@@ -2,8 +2,8 @@
 
 use super::*;
 
-/// A set of unit directions on one side of a cluster's size, from a point to most of the hemisphere, with
-/// every third set about the mirror direction.
+/// Samples a set of unit directions as a cluster of lights gives them, from a single direction to most of the
+/// hemisphere. Every third set is around the mirror direction.
 fn direction_set(random: &mut Random, wo: Vec3) -> Vec<Vec3> {
     let axis = match (random.next() * 3.0) as u32 {
         0 => Vec3::new(-wo.x, -wo.y, wo.z),
@@ -20,7 +20,7 @@ fn direction_set(random: &mut Random, wo: Vec3) -> Vec<Vec3> {
         .collect()
 }
 
-/// The tightest description of a set.
+/// Returns the tightest bounds of a set.
 fn describe(wo: Vec3, set: &[Vec3]) -> DirectionBound {
     let mirror = Vec3::new(-wo.x, -wo.y, wo.z);
     let max = |f: &dyn Fn(Vec3) -> f32| set.iter().map(|&wi| f(wi)).fold(f32::NEG_INFINITY, f32::max);
@@ -72,10 +72,10 @@ fn no_direction_of_a_set_exceeds_the_bound() {
             let at = |q: f32| looseness[((looseness.len() - 1) as f32 * q) as usize];
             let (median, p90) = (at(0.5), at(0.9));
             eprintln!("{:28} bound / largest: median {median:.3}, 90 % {p90:.3}", material.name);
-            // Of sharper lobes rounding of the cosines decides, and rougher ones peak at grazing facets.
+            // Rounding of the cosines dominates for sharper lobes, and rougher lobes peak at grazing facets.
             let alpha = min_alpha(&material);
             let extreme = alpha.is_finite() && !(0.01..=1.0).contains(&alpha);
-            // Bounds know no azimuth, by which an anisotropic lobe differs as much as its roughness does.
+            // Bounds do not depend on the azimuth, over which an anisotropic lobe varies as much as its roughness.
             let by_azimuth = match (&material.lobes[..], &material.principled) {
                 ([Lobe::Anisotropic { alpha: [u, v], .. }], _) => u.max(*v) / u.min(*v),
                 (_, Some(principled)) => 1.0 / (1.0 - 0.9 * principled.anisotropic),

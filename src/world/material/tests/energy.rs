@@ -4,7 +4,7 @@ use super::*;
 use crate::material::lobe::DIFFUSE_ALPHA;
 use crate::material::sample::DeltaLobes;
 
-/// Mean sample weight from `wo` over a stratified grid: the albedo, delta lobes included.
+/// Computes the albedo with delta lobes: the mean weight of stratified samples from `wo`.
 fn albedo_by_sampling(bsdf: &Bsdf, wo: Vec3, seed: u64) -> Rgb {
     const N: usize = 24;
     let mut random = Random(seed);
@@ -21,7 +21,7 @@ fn albedo_by_sampling(bsdf: &Bsdf, wo: Vec3, seed: u64) -> Rgb {
     (sum / (N * N * N) as f64).as_vec3()
 }
 
-/// Materials that absorb nothing, as far as they can.
+/// Returns materials that absorb as little as their kind can, and the energy that each must keep.
 fn white_materials() -> Vec<(Material, f32)> {
     let mut all = vec![(lambert(Rgb::ONE), 1.0), (mirror(Fresnel::One), 1.0), (glass(1.5), 1.0)];
     for distribution in [Distribution::Ggx, Distribution::Beckmann] {

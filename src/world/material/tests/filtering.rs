@@ -27,7 +27,7 @@ fn principled(change: impl FnOnce(&mut Principled)) -> Material {
     Material { principled: Some(principled.into()), ..Material::default() }
 }
 
-/// Materials that are averaged.
+/// Returns materials whose textures are averaged.
 fn averaged() -> Vec<Material> {
     let mut metal = rough_conductor(Distribution::Ggx, 0.3, Rgb::ONE);
     let Lobe::Rough { scale, .. } = &mut metal.lobes[0] else { unreachable!("a rough lobe") };
@@ -44,7 +44,7 @@ fn averaged() -> Vec<Material> {
     ]
 }
 
-/// Materials that are not: light is no linear function of their texels.
+/// Returns materials whose textures are not averaged, because reflected light is not linear in their texels.
 fn at_points() -> Vec<Material> {
     let mut rough = textured(rough_plastic(Distribution::Ggx, 0.2, false));
     let Lobe::Rough { alpha, .. } = &mut rough.lobes[0] else { unreachable!("a rough lobe") };

@@ -2,7 +2,7 @@
 
 use super::*;
 
-/// The other side of a direction.
+/// Reflects a direction to the other side.
 fn behind(v: Vec3) -> Vec3 {
     Vec3::new(v.x, v.y, -v.z)
 }
@@ -22,7 +22,7 @@ fn a_share_of_the_light_passes_straight_and_the_rest_meets_the_material() {
                 let passage = b.delta_lobes(wo).refraction.expect("a gap");
                 assert!(passage.straight && (passage.wi + wo).length() < 1e-6);
             }
-            // Of a back that is black, gaps are all there is.
+            // A black back scatters nothing; light only passes the gaps.
             if !two_sided {
                 let mut random = Random(11);
                 for _ in 0..1000 {

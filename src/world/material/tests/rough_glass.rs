@@ -14,7 +14,7 @@ fn materials() -> Vec<Material> {
     all
 }
 
-/// Uniform on the sphere.
+/// Samples the sphere uniformly.
 fn anywhere(random: &mut Random) -> Vec3 {
     direction((1.0 - 2.0 * random.next()).acos(), random.next() * TAU)
 }

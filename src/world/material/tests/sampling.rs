@@ -9,7 +9,7 @@ const COS_BINS: usize = 10;
 const PHI_BINS: usize = 20;
 const INCLINATIONS: [f32; 4] = [0.0, 0.6, 1.2, 1.5];
 
-/// Probability of each bin of the upper hemisphere by quadrature of the density.
+/// Computes the probability of each bin of the upper hemisphere by quadrature of the density.
 fn expected(bsdf: &Bsdf, wo: Vec3) -> Vec<f64> {
     let rule: Vec<_> = gauss_legendre(40).iter().map(|&(x, w)| (x as f32, w as f32)).collect();
     let bin = |i: usize| {
@@ -27,7 +27,7 @@ fn expected(bsdf: &Bsdf, wo: Vec3) -> Vec<f64> {
     (0..COS_BINS * PHI_BINS).map(bin).collect()
 }
 
-/// Chi-square against the expected counts (bins under 5 pooled), as a standard normal deviate
+/// Returns the chi-square against the expected counts (bins below 5 are pooled) as a standard normal deviate
 /// (Wilson and Hilferty).
 fn deviate(observed: &[f64], expected: &[f64]) -> f64 {
     let (mut chi_square, mut cells, mut pool) = (0.0, 0.0f64, (0.0, 0.0));

@@ -39,8 +39,8 @@ impl Numbers {
     }
 }
 
-/// A closed box whose walls are grids, so that rays can pass through shared edges; a ball; and loose triangles from
-/// large ones to slivers.
+/// Builds a closed box whose walls are grids, so that rays can pass through shared edges; a ball; and loose triangles
+/// from large ones to slivers.
 fn world() -> World {
     let mut meshes = Vec::new();
     let mut mesh = |positions: Vec<Vec3>, triangles| {
@@ -105,7 +105,7 @@ fn world() -> World {
     World::new(Scene { meshes, materials: vec![grey], ..Scene::default() }, 1).unwrap()
 }
 
-/// A random segment among difficult cases.
+/// Samples a segment among difficult cases.
 fn segment_among(corners: &[[Vec3; 3]], numbers: &mut Numbers) -> Ray {
     let [a, b, c] = numbers.of(corners);
     let inside = |numbers: &mut Numbers| {
@@ -169,7 +169,7 @@ fn the_cache_changes_no_answer() {
     assert!(all.saved * 10 > all.rays && all.occluded < all.rays, "the test saves too little: {all:?}");
 }
 
-/// Sixteen receivers close together and a light.
+/// Samples sixteen neighbouring receivers and a light.
 fn neighbours(corners: &[[Vec3; 3]], numbers: &mut Numbers) -> Rays16 {
     let (seed, light) = (segment_among(corners, numbers), numbers.point());
     let mut rays = Rays16::default();

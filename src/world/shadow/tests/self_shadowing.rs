@@ -24,7 +24,7 @@ struct Point {
 }
 
 impl Solid {
-    /// An octahedron subdivided onto its sphere of radius `size`.
+    /// Returns an octahedron, subdivided onto its sphere of radius `size`.
     fn sphere(size: f32, centre: Vec3) -> Solid {
         let octant = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(Vec3::from);
         let mut faces: Vec<[Vec3; 3]> = Vec::new();
@@ -47,7 +47,7 @@ impl Solid {
         Solid::new(faces, size, centre)
     }
 
-    /// A box of sides up to `size` with a thickness of a hundredth of it.
+    /// Returns a box of sides up to `size` and a hundredth of it thick.
     fn slab(size: f32, centre: Vec3) -> Solid {
         let half = Vec3::new(1.0, 0.8, 0.01);
         let mut faces = Vec::new();
@@ -84,7 +84,7 @@ impl Solid {
         Point { position, normal: (b - a).cross(c - a).normalize() }
     }
 
-    /// Surface points in the given directions, a few of them near edges.
+    /// Returns surface points in the given directions, a few of them near edges.
     fn points(&self, directions: &[Vec3]) -> Vec<Point> {
         let seen = |d: &Vec3| {
             let eye = self.centre + 3.0 * self.size * *d;
@@ -104,14 +104,14 @@ impl Solid {
         })
     }
 
-    /// Point in which a ray crosses the plane of the face at `p`.
+    /// Returns the point where a ray crosses the plane of the face at `p`.
     fn crossing(p: &Point, ray: &Ray) -> DVec3 {
         let [at, normal, origin, direction] =
             [p.position, p.normal, ray.origin, ray.direction].map(Vec3::as_dvec3);
         origin - direction * ((origin - at).dot(normal) / direction.dot(normal))
     }
 
-    /// Occlusion of segments by single rays and by packets, which must agree.
+    /// Returns the occlusion of segments, and checks that single rays and packets agree.
     fn occluded(&self, rays: &[Ray]) -> Vec<bool> {
         let single: Vec<bool> = rays.iter().map(|ray| self.accel.occluded(ray)).collect();
         for (rays, single) in rays.chunks(16).zip(single.chunks(16)) {
@@ -178,8 +178,8 @@ fn direction() -> impl Strategy<Value = Vec3> {
     })
 }
 
-/// Directions all around, which follow from one number: were each of them free, failures would be reduced to those of
-/// too few points.
+/// Returns directions all around, which follow from one number. If each was a free parameter, failures would shrink to
+/// cases of too few points.
 fn directions(seed: u32) -> Vec<Vec3> {
     (0..400).map(|i| uniform_sphere(owen_sobol_2d(i, seed))).collect()
 }
@@ -213,7 +213,7 @@ proptest! {
     }
 }
 
-/// A segment's end that lies near the origin, found only as exactly as the segment is long.
+/// Tests segments whose end lies near the origin: it is only as precise as the segment is long.
 #[test]
 fn ends_near_the_origin_are_free_from_afar() {
     let result = check(&Solid::sphere(1.0, Vec3::X), &directions(54_657_067));
