@@ -5,7 +5,7 @@ use super::colours::ColourSource;
 use super::layers::Layers;
 use super::lobe::{DIFFUSE_ALPHA, LobeModel, MAX_LOBES};
 use super::model::{Bsdf, Colours, LobeKinds, Model};
-use super::roughness::{RoughnessLevels, RoughnessValues};
+use super::roughness::{RoughnessLevel, RoughnessLevels, RoughnessValues};
 use super::straight::Straight;
 use super::tables::Tables;
 use base::math::Rgb;
@@ -14,13 +14,13 @@ use scene::{Fresnel, Material, MaterialId, Share, Texture, TextureId, Textures};
 
 /// Material of the scene, prepared to be looked up at points.
 #[derive(Clone, Debug)]
-pub(super) struct Entry {
+pub(super) struct MaterialEntry {
     /// Model and colours; if the roughness is textured, those of its mean.
-    pub shading: Shading,
+    pub coloured: ColouredModel,
     /// Colours with every texture replaced by its mean.
     pub average: Colours<Rgb>,
     /// Models by level of the roughness, if the roughness is textured.
-    pub levels: Option<ShadingLevels>,
+    pub levels: Option<ModelLevels>,
     /// Lobes that light passes straight, if there are any and nothing is textured.
     pub straight: Option<Straight>,
     /// Share of the surface that is there, if gaps are all that light passes straight and something is textured.
@@ -34,7 +34,7 @@ pub(super) struct Entry {
 
 /// Model and the source of its colours.
 #[derive(Clone, Debug)]
-pub(super) struct Shading {
+pub(super) struct ColouredModel {
     pub model: Model,
     pub colours: Colouring,
 }
@@ -50,12 +50,12 @@ pub(super) enum Colouring {
 
 /// Models of a material by level of its roughness.
 #[derive(Clone, Debug)]
-pub(super) struct ShadingLevels {
+pub(super) struct ModelLevels {
     pub levels: RoughnessLevels,
-    pub shadings: Vec<Shading>,
+    pub models: Vec<ColouredModel>,
 }
 
-impl Shading {
+impl ColouredModel {
     /// Returns the material at a point; `texel` returns the value of a texture there.
     #[inline]
     pub fn bsdf(&self, texel: &dyn Fn(TextureId) -> Rgb) -> Bsdf<'_> {
@@ -91,7 +91,7 @@ impl<'a> Builder<'a> {
     }
 
     /// Builds a material.
-    pub fn entry(&mut self, material: &Material, id: MaterialId) -> Entry {
+    pub fn entry(&mut self, material: &Material, id: MaterialId) -> MaterialEntry {
         let levels = RoughnessLevels::of(material, self.textures);
         let (mut model, source) = self.model(material, id, None);
         model.mean_roughness = levels.is_some();
@@ -112,8 +112,8 @@ impl<'a> Builder<'a> {
             true => Colouring::Textured(source),
             false => Colouring::Constant(average),
         };
-        Entry {
-            shading: Shading { model, colours },
+        MaterialEntry {
+            coloured: ColouredModel { model, colours },
             average,
             levels: levels.map(|levels| self.levels(material, id, levels)),
             straight,
@@ -124,17 +124,17 @@ impl<'a> Builder<'a> {
     }
 
     /// Builds the models of a material by level of its roughness.
-    fn levels(&mut self, material: &Material, id: MaterialId, levels: RoughnessLevels) -> ShadingLevels {
-        let shading = |level| {
+    fn levels(&mut self, material: &Material, id: MaterialId, levels: RoughnessLevels) -> ModelLevels {
+        let coloured = |level| {
             let (model, source) = self.model(material, id, Some((levels.texture, level)));
             let colours = match source.is_textured() {
                 true => Colouring::Textured(source),
                 false => Colouring::Constant(source.colours(&model.base, &|_| Rgb::ONE)),
             };
-            Shading { model, colours }
+            ColouredModel { model, colours }
         };
-        let shadings = levels.all().map(shading).collect();
-        ShadingLevels { levels, shadings }
+        let models = levels.all().map(coloured).collect();
+        ModelLevels { levels, models }
     }
 
     /// Builds the model of a material and the source of its colours, for a level of its roughness or for the mean.
@@ -142,7 +142,7 @@ impl<'a> Builder<'a> {
         &mut self,
         material: &Material,
         id: MaterialId,
-        level: Option<(TextureId, super::roughness::RoughnessLevel)>,
+        level: Option<(TextureId, RoughnessLevel)>,
     ) -> (Model, ColourSource) {
         let most = MAX_LOBES - usize::from(material.opacity.is_some());
         let roughness = RoughnessValues { means: &self.means, level };

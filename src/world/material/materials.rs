@@ -1,7 +1,7 @@
 //! Materials of a scene, looked up at points. Values that do not depend on the point are computed once per scene.
 
 use super::base::CoatInterface;
-use super::build::{Builder, Colouring, Entry};
+use super::build::{Builder, Colouring, MaterialEntry};
 use super::colours::opaque;
 use super::model::Bsdf;
 use super::straight::LastStraight;
@@ -14,7 +14,7 @@ use scene::{MaterialId, Scene, Texture, TextureId};
 #[derive(Clone, Debug)]
 pub struct Materials {
     /// Materials by their id.
-    entries: Vec<Entry>,
+    entries: Vec<MaterialEntry>,
     /// Every distinct coat; the first stands for none.
     coats: Vec<CoatInterface>,
     textures: MipMaps,
@@ -25,7 +25,7 @@ impl Materials {
     pub fn new(scene: &Scene) -> Materials {
         let mut builder = Builder::new(&scene.textures);
         let ids = (0..).map(MaterialId);
-        let entries: Vec<Entry> =
+        let entries: Vec<MaterialEntry> =
             scene.materials.iter().zip(ids).map(|(material, id)| builder.entry(material, id)).collect();
         let filtered = entries.iter().flat_map(|entry| &entry.filtered).copied();
         let textures = MipMaps::new(&scene.textures, filtered);
@@ -67,8 +67,8 @@ impl Materials {
         covered: impl FnOnce() -> f32,
     ) -> Bsdf<'_> {
         let entry = &self.entries[id.0 as usize];
-        match &entry.shading.colours {
-            Colouring::Constant(colours) => entry.shading.model.with_colours(colours),
+        match &entry.coloured.colours {
+            Colouring::Constant(colours) => entry.coloured.model.with_colours(colours),
             Colouring::Textured(_) => {
                 let covered = if entry.filtered.is_empty() { 0.0 } else { covered() };
                 self.textured(entry, uv(), covered)
@@ -76,13 +76,13 @@ impl Materials {
         }
     }
 
-    fn textured<'m>(&'m self, entry: &'m Entry, uv: Vec2, covered: f32) -> Bsdf<'m> {
+    fn textured<'m>(&'m self, entry: &'m MaterialEntry, uv: Vec2, covered: f32) -> Bsdf<'m> {
         let texel = |id: TextureId| self.textures.lookup(id, uv, covered);
-        let shading = match &entry.levels {
-            Some(levels) => &levels.shadings[levels.levels.index(luminance(texel(levels.levels.texture)))],
-            None => &entry.shading,
+        let coloured = match &entry.levels {
+            Some(levels) => &levels.models[levels.levels.index(luminance(texel(levels.levels.texture)))],
+            None => &entry.coloured,
         };
-        shading.bsdf(&texel)
+        coloured.bsdf(&texel)
     }
 
     /// Returns the texture of the material that a lookup reads first; `None` if it has none.
@@ -124,6 +124,6 @@ impl Materials {
     /// Returns the material with every texture replaced by its mean.
     pub fn average(&self, id: MaterialId) -> Bsdf<'_> {
         let entry = &self.entries[id.0 as usize];
-        entry.shading.model.with_colours(&entry.average)
+        entry.coloured.model.with_colours(&entry.average)
     }
 }
