@@ -79,7 +79,7 @@ fn glossy_room() -> WorldAndView {
 
 /// A room with a ball and a lamp. `materials` returns the materials of floor and ball, given that of the walls.
 fn room_with_ball(materials: impl FnOnce(&mut Scene, MaterialId) -> [MaterialId; 2]) -> WorldAndView {
-    let mut scene = scene(camera(Vec3::new(0.0, 0.0, 0.95), Vec3::new(0.0, -0.3, 0.0), 0.9), [SIZE; 2]);
+    let mut scene = scene(room_camera(), [SIZE; 2]);
     let wall = add_material(&mut scene, diffuse(Rgb::new(0.7, 0.5, 0.6)));
     let [floor, ball] = materials(&mut scene, wall);
     scene.meshes.extend(room(Vec3::splat(-1.0), Vec3::ONE, wall));

@@ -33,7 +33,7 @@ fn foliage() -> SceneAndView {
 
 /// A room of polished metal with a ball and a lamp.
 fn gloss() -> SceneAndView {
-    let mut scene = scene(camera(Vec3::new(0.0, 0.0, 0.95), Vec3::new(0.0, -0.3, 0.0), 0.9), FILM);
+    let mut scene = scene(room_camera(), FILM);
     let lobe = Lobe::Rough {
         distribution: Distribution::Ggx,
         alpha: 0.15.into(),
@@ -63,7 +63,7 @@ fn caustics(radius: f32) -> SceneAndView {
 
 /// A room lit by its ceiling alone, at which a lamp shines.
 fn indirect() -> SceneAndView {
-    let mut scene = scene(camera(Vec3::new(0.0, 0.0, 0.95), Vec3::new(0.0, -0.3, 0.0), 0.9), FILM);
+    let mut scene = scene(room_camera(), FILM);
     let wall = add_material(&mut scene, diffuse(Rgb::new(0.7, 0.6, 0.5)));
     scene.meshes.extend(room(Vec3::splat(-1.0), Vec3::ONE, wall));
     let lamp = quad(Vec3::new(-0.7, 0.7, -0.3), Vec3::Z * 0.2, Vec3::X * 0.2, wall);

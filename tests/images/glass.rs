@@ -41,7 +41,7 @@ fn sheet(scene: &mut SceneAndView, x: f32, material: Material) {
 
 /// A closed room with a ball and a small lamp.
 fn lamp_room(add: impl Fn(&mut SceneAndView)) -> WorldAndView {
-    let mut scene = scene(camera(Vec3::new(0.0, 0.0, 0.95), Vec3::new(0.0, -0.3, 0.0), 0.9), [16, 16]);
+    let mut scene = scene(room_camera(), [16, 16]);
     let wall = add_material(&mut scene, diffuse(Rgb::new(0.6, 0.5, 0.4)));
     scene.meshes.extend(room(Vec3::splat(-1.0), Vec3::ONE, wall));
     scene.meshes.push(sphere(Vec3::new(-0.4, -0.7, -0.2), 0.3, 24, wall));

@@ -16,7 +16,7 @@ fn small() -> Settings {
 
 /// A room with a box on its floor.
 fn boxed_room() -> WorldAndView {
-    let mut scene = scene(camera(Vec3::new(0.0, 0.0, 0.95), Vec3::new(0.0, -0.3, 0.0), 0.9), [SIZE; 2]);
+    let mut scene = scene(room_camera(), [SIZE; 2]);
     let wall = add_material(&mut scene, diffuse(Rgb::new(0.7, 0.5, 0.6)));
     scene.meshes.extend(room(Vec3::splat(-1.0), Vec3::ONE, wall));
     for mut side in room(Vec3::new(-0.6, -1.0, -0.5), Vec3::new(0.0, -0.4, 0.1), wall) {
