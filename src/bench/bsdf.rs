@@ -1,8 +1,8 @@
-//! Materials: look-ups, evaluations, samples and bounds a second.
+//! Materials: evaluations, samples and bounds per second.
 
-use super::measure::Case;
-use super::setting::Dice;
-use super::{Benchmark, Clock, Context, Kind, Table};
+use super::lit_scene::Dice;
+use super::measure::{Case, Clock, Experiment};
+use super::{Benchmark, Context, Kind, Table};
 use base::math::Rgb;
 use base::sampling::uniform_sphere;
 use glam::{Vec2, Vec3};
@@ -12,17 +12,18 @@ use world::material::{Bsdf, DirectionBound, Materials};
 
 pub(super) const BENCHMARK: Benchmark = Benchmark {
     name: "bsdf",
-    about: "Evaluations, samples and bounds of every kind of material a second",
+    about: "Evaluations, samples and bounds of every kind of material per second",
     kind: Kind::Parts { needs_scene: false, run },
 };
 
+/// Number of directions.
 const DIRECTIONS: usize = 1024;
 
 fn run(context: &Context) -> Vec<Table> {
     let scene = Scene { materials: kinds(), ..Scene::default() };
     let materials = Materials::new(&scene);
     let mut dice = Dice(6);
-    let mut part = || dice.below(1 << 24) as f32 / (1 << 24) as f32;
+    let mut part = || dice.unit();
     let directions: Vec<Vec3> = (0..DIRECTIONS)
         .map(|_| {
             let v = uniform_sphere(Vec2::new(part(), part()));
@@ -57,12 +58,17 @@ fn run(context: &Context) -> Vec<Table> {
             }));
         }
     }
-    vec![Table::measured(
-        ("Materials", "Ratio to a diffuse surface."),
-        (&["call", "material"], "M/s", &[]),
-        (Clock::Thread, &context.settings, 1e-6),
+    let experiment = Experiment {
+        title: "Materials",
+        about: "Ratio to a diffuse surface.",
+        labels: &["call", "material"],
+        unit: "M/s",
+        scale: 1e-6,
+        figures: &[],
+        clock: Clock::Thread,
         cases,
-    )]
+    };
+    vec![experiment.measure(&context.settings)]
 }
 
 /// Returns a material of each kind.

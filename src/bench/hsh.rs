@@ -1,9 +1,8 @@
-//! Hemispherical harmonics: virtual lights added to a series a second, and evaluations of the reflected
-//! radiance.
+//! Hemispherical harmonics: virtual lights added to a series per second, and evaluations of the reflected radiance.
 
-use super::measure::Case;
-use super::setting::Dice;
-use super::{Benchmark, Clock, Context, Kind, Table};
+use super::lit_scene::Dice;
+use super::measure::{Case, Clock, Experiment};
+use super::{Benchmark, Context, Kind, Table};
 use base::math::Rgb;
 use glam::Vec3;
 use std::hint::black_box;
@@ -12,10 +11,11 @@ use transport::hsh::{Accumulator, Kernel, Reflected};
 
 pub(super) const BENCHMARK: Benchmark = Benchmark {
     name: "hsh",
-    about: "Lights added to a series of hemispherical harmonics a second, and look-ups",
+    about: "Hemispherical harmonics: lights added to a series per second, and look-ups",
     kind: Kind::Parts { needs_scene: false, run },
 };
 
+/// Number of lights.
 const LIGHTS: usize = 1000;
 
 fn run(context: &Context) -> Vec<Table> {
@@ -45,17 +45,22 @@ fn run(context: &Context) -> Vec<Table> {
             }
         }));
     }
-    vec![Table::measured(
-        ("Hemispherical harmonics", "Ratio to one band."),
-        (&["what", "bands"], "M/s", &[]),
-        (Clock::Thread, &context.settings, 1e-6),
+    let experiment = Experiment {
+        title: "Hemispherical harmonics",
+        about: "Ratio to one band.",
+        labels: &["what", "bands"],
+        unit: "M/s",
+        scale: 1e-6,
+        figures: &[],
+        clock: Clock::Thread,
         cases,
-    )]
+    };
+    vec![experiment.measure(&context.settings)]
 }
 
-/// Draws a patch somewhere above, facing the receiver more or less.
+/// Returns a random light above the receiver that roughly faces it.
 fn source(dice: &mut Dice) -> LocalVpl<f32> {
-    let mut part = || dice.below(1 << 24) as f32 / (1 << 24) as f32;
+    let mut part = || dice.unit();
     let offset = Vec3::new(part() - 0.5, part() - 0.5, part());
     let normal = (Vec3::new(part() - 0.5, part() - 0.5, part() - 0.5) - offset).normalize();
     LocalVpl::Oriented { offset: offset.to_array(), normal: normal.to_array() }

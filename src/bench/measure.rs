@@ -1,17 +1,17 @@
 //! Rates of cases measured in turns, so that other load on the machine affects all of them equally.
 //!
-//! Every case is run once to warm up and to find the number of runs in a sample. Then each round takes a
-//! sample of every case, every other round in reverse; a case's ratio is formed within the rounds.
+//! Each case runs once to warm up and once to find the number of runs per sample. Each round then takes a sample of
+//! every case, in reverse order every other round. Ratios are formed within rounds.
 
 use super::{Row, Settings, Spread, Table};
 use rustix::time::{ClockId, clock_gettime};
 
-/// Clock by which a benchmark is timed.
+/// Clock that times a benchmark.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Clock {
-    /// Processor time of the calling thread: for work on one thread.
+pub(super) enum Clock {
+    /// Processor time of the calling thread.
     Thread,
-    /// Processor time of all threads together: for cost.
+    /// Processor time of all threads together.
     Process,
 }
 
@@ -23,133 +23,132 @@ impl Clock {
         });
         time.tv_sec as f64 + time.tv_nsec as f64 * 1e-9
     }
-
-    fn of(self, work: &mut dyn FnMut()) -> f64 {
-        let start = self.seconds();
-        work();
-        self.seconds() - start
-    }
 }
 
 /// Work to be timed.
 pub(super) struct Case<'a> {
-    /// Labels of its row.
-    pub labels: Vec<String>,
-    /// Index of the case that its ratio is to; may be its own.
-    pub against: usize,
-    /// Units of work in a run.
-    pub units: f64,
-    /// Further figures.
-    pub figures: Vec<Option<f64>>,
-    /// Function that does one run.
-    pub work: Box<dyn FnMut() + 'a>,
+    labels: Vec<String>,
+    against: usize,
+    units: f64,
+    figures: Vec<Option<f64>>,
+    work: Box<dyn FnMut() + 'a>,
 }
 
 impl<'a> Case<'a> {
-    /// Creates a case without further figures.
+    /// Creates a case whose ratio refers to the case of index `against`, which may be itself. A run of `work` does
+    /// `units` of work.
     pub fn new(labels: &[&str], against: usize, units: f64, work: impl FnMut() + 'a) -> Case<'a> {
-        Case {
-            labels: labels.iter().map(|l| (*l).to_owned()).collect(),
-            against,
-            units,
-            figures: Vec::new(),
-            work: Box::new(work),
-        }
+        let labels = labels.iter().map(|l| (*l).to_owned()).collect();
+        Case { labels, against, units, figures: Vec::new(), work: Box::new(work) }
+    }
+
+    /// Adds further figures.
+    pub fn with(self, figures: &[f64]) -> Case<'a> {
+        Case { figures: figures.iter().copied().map(Some).collect(), ..self }
+    }
+
+    /// Returns the seconds that some runs take.
+    fn time(&mut self, runs: usize, clock: Clock) -> f64 {
+        let start = clock.seconds();
+        (0..runs).for_each(|_| (self.work)());
+        clock.seconds() - start
     }
 }
 
-/// Distance from the median, in median deviations, beyond which a sample is an outlier.
-const OUTLYING: f64 = 10.0 * 1.4826;
-/// Relative distance of a ratio's quartiles beyond which it is unsteady.
+/// Cases to be measured against each other, and the description of their table.
+pub(super) struct Experiment<'a> {
+    pub title: &'a str,
+    pub about: &'a str,
+    /// Names of the cases' labels.
+    pub labels: &'a [&'a str],
+    /// Unit of the rates.
+    pub unit: &'a str,
+    /// Factor from units of work per second to that unit.
+    pub scale: f64,
+    /// Names of the cases' further figures.
+    pub figures: &'a [&'a str],
+    pub clock: Clock,
+    pub cases: Vec<Case<'a>>,
+}
+
+/// Relative distance of a ratio's quartiles beyond which a warning is given.
 const UNSTEADY: f64 = 0.1;
-/// Minimum duration of a usable sample, seconds.
-const SHORTEST: f64 = 1e-5;
+/// Minimum duration of a sample without a warning, seconds.
+const MIN_SECONDS: f64 = 1e-5;
 /// Maximum number of runs in a sample.
-const MOST_RUNS: f64 = 1e6;
+const MAX_RUNS: f64 = 1e6;
 
-/// Measures cases in turns. Rates are in units of work a second times `scale`.
-pub(super) fn alternate(
-    cases: Vec<Case>,
-    clock: Clock,
-    settings: &Settings,
-    scale: f64,
-) -> (Vec<Row>, Vec<String>) {
-    let mut cases = cases;
-    let runs: Vec<usize> = cases
-        .iter_mut()
-        .map(|case| {
-            (case.work)();
-            let once = clock.of(&mut *case.work).max(1e-9);
-            (settings.seconds / once).clamp(1.0, MOST_RUNS) as usize
-        })
-        .collect();
-    let mut rates = vec![Vec::with_capacity(settings.repeats); cases.len()];
-    let mut short = vec![false; cases.len()];
-    for round in 0..settings.repeats {
-        for place in 0..cases.len() {
-            let i = if round % 2 == 0 { place } else { cases.len() - 1 - place };
-            let case = &mut cases[i];
-            let seconds = clock.of(&mut || (0..runs[i]).for_each(|_| (case.work)()));
-            short[i] |= seconds < SHORTEST;
-            rates[i].push(case.units * runs[i] as f64 / seconds.max(1e-9) * scale);
-        }
-    }
-    let mut warnings = Vec::new();
-    let rows: Vec<Row> = cases
-        .into_iter()
-        .enumerate()
-        .map(|(i, case)| {
-            let ratios: Vec<f64> = rates[i].iter().zip(&rates[case.against]).map(|(a, b)| a / b).collect();
-            let ratio = Spread::of(&ratios);
-            let doubt = if short[i] {
-                Some("there is next to nothing to do; try a larger scene".to_owned())
-            } else if ratio.relative() > UNSTEADY {
-                let spread = 100.0 * ratio.relative();
-                Some(format!(
-                    "the middle half of the ratios spreads over {spread:.0} %; try longer --seconds or a quieter machine"
-                ))
-            } else {
-                let count = outliers(&ratios);
-                let text = format!("{count} outliers; is something else running? More --repeats help");
-                (count > 0).then_some(text)
-            };
+/// Samples of a case.
+#[derive(Clone, Default)]
+struct Samples {
+    rates: Vec<f64>,
+    /// True if a sample was too short to be timed well.
+    short: bool,
+}
+
+impl Experiment<'_> {
+    /// Measures the cases.
+    pub fn measure(mut self, settings: &Settings) -> Table {
+        let samples = self.samples(settings);
+        let mut warnings = Vec::new();
+        let mut rows = Vec::with_capacity(self.cases.len());
+        for (case, own) in self.cases.into_iter().zip(&samples) {
+            let against = &samples[case.against].rates;
+            let ratios: Vec<f64> = own.rates.iter().zip(against).map(|(a, b)| a / b).collect();
+            let doubt = doubt(&ratios, own.short);
             warnings.extend(doubt.map(|doubt| format!("{}: {doubt}", case.labels.join(", "))));
-            let rate = Spread::of(&rates[i]);
-            Row { labels: case.labels, ratio, rate, samples: rates[i].clone(), figures: case.figures }
-        })
-        .collect();
-    (rows, warnings)
-}
-
-/// Counts values far from the others. The median deviation is taken to be at least one per cent of the
-/// median.
-fn outliers(values: &[f64]) -> usize {
-    let median = Spread::of(values).median;
-    let deviations: Vec<f64> = values.iter().map(|v| (v - median).abs()).collect();
-    let usual = Spread::of(&deviations).median.max(1e-2 * median);
-    deviations.iter().filter(|&&d| d > OUTLYING * usual).count()
-}
-
-impl Table {
-    /// Measures `cases`.
-    pub(super) fn measured(
-        (title, about): (&str, &str),
-        (labels, unit, figures): (&[&str], &str, &[&str]),
-        (clock, settings, scale): (Clock, &Settings, f64),
-        cases: Vec<Case>,
-    ) -> Table {
-        let (rows, warnings) = alternate(cases, clock, settings, scale);
+            rows.push(Row {
+                labels: case.labels,
+                ratio: Spread::of(&ratios),
+                rate: Spread::of(&own.rates),
+                samples: own.rates.clone(),
+                figures: case.figures,
+            });
+        }
         let owned = |names: &[&str]| names.iter().map(|n| (*n).to_owned()).collect();
         Table {
-            title: title.to_owned(),
-            about: about.to_owned(),
-            labels: owned(labels),
-            unit: unit.to_owned(),
-            figures: owned(figures),
+            title: self.title.to_owned(),
+            about: self.about.to_owned(),
+            labels: owned(self.labels),
+            unit: self.unit.to_owned(),
+            figures: owned(self.figures),
             rows,
             warnings,
         }
     }
+
+    fn samples(&mut self, settings: &Settings) -> Vec<Samples> {
+        let (clock, scale) = (self.clock, self.scale);
+        let runs = |case: &mut Case| {
+            case.time(1, clock);
+            (settings.seconds / case.time(1, clock).max(1e-9)).clamp(1.0, MAX_RUNS) as usize
+        };
+        let runs: Vec<usize> = self.cases.iter_mut().map(runs).collect();
+        let mut samples = vec![Samples::default(); self.cases.len()];
+        for round in 0..settings.repeats {
+            for place in 0..self.cases.len() {
+                let i = if round % 2 == 0 { place } else { self.cases.len() - 1 - place };
+                let seconds = self.cases[i].time(runs[i], clock);
+                samples[i].short |= seconds < MIN_SECONDS;
+                let units = self.cases[i].units * runs[i] as f64;
+                samples[i].rates.push(units / seconds.max(1e-9) * scale);
+            }
+        }
+        samples
+    }
+}
+
+/// Returns the reason for which the ratios of a case should be doubted, with a remedy.
+fn doubt(ratios: &[f64], short: bool) -> Option<String> {
+    let spread = Spread::of(ratios).relative();
+    if short {
+        return Some("there is next to nothing to do; try a larger scene".to_owned());
+    }
+    let percent = 100.0 * spread;
+    let text = format!(
+        "the middle half of the ratios spreads over {percent:.0} %; try longer --seconds or a quieter machine"
+    );
+    (spread > UNSTEADY).then_some(text)
 }
 
 #[cfg(test)]
@@ -160,23 +159,25 @@ mod tests {
     #[test]
     fn cases_take_turns_and_are_compared_within_rounds() {
         let order = RefCell::new(Vec::new());
-        let case = |name: &'static str, against| {
+        let case = |name: &'static str| {
             let order = &order;
-            Case::new(&[name], against, 1.0, move || order.borrow_mut().push(name))
+            Case::new(&[name], 0, 2.0, move || order.borrow_mut().push(name))
         };
-        let settings = Settings { repeats: 3, seconds: 0.0, threads: 1 };
-        let (rows, _) = alternate(vec![case("a", 0), case("b", 0)], Clock::Process, &settings, 1.0);
+        let experiment = Experiment {
+            title: "",
+            about: "",
+            labels: &["name"],
+            unit: "",
+            scale: 1.0,
+            figures: &[],
+            clock: Clock::Process,
+            cases: vec![case("a"), case("b")],
+        };
+        let rows = experiment.measure(&Settings { repeats: 3, seconds: 0.0, threads: 1 }).rows;
         assert_eq!(order.borrow().concat(), "aabbabbaab");
         assert_eq!((rows[0].ratio.median, rows[0].samples.len()), (1.0, 3));
         let median = |i: usize| rows[0].samples[i] / rows[1].samples[i];
         let expected = Spread::of(&[1.0 / median(0), 1.0 / median(1), 1.0 / median(2)]);
         assert!((rows[1].ratio.median / expected.median - 1.0).abs() < 1e-12);
-    }
-
-    #[test]
-    fn a_sample_far_from_the_rest_is_an_outlier() {
-        assert_eq!(outliers(&[1.0, 1.01, 0.99, 1.02, 3.0]), 1);
-        assert_eq!(outliers(&[1.0, 1.2, 0.8, 1.1, 0.9]), 0);
-        assert_eq!(outliers(&[1.0; 5]), 0);
     }
 }

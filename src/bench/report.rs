@@ -1,4 +1,4 @@
-//! Results of a benchmark.
+//! Results of a benchmark of parts.
 
 use serde::Serialize;
 
@@ -7,9 +7,9 @@ use serde::Serialize;
 pub struct Report {
     /// Name of the benchmark.
     pub benchmark: String,
-    /// Name of the scene, if it was on one.
+    /// Name of the scene, if the benchmark needs one.
     pub scene: Option<String>,
-    /// Other conditions that the figures depend on, by name.
+    /// Other conditions that the figures depend on, each with its name.
     pub facts: Vec<(String, String)>,
     /// The measured tables.
     pub tables: Vec<Table>,
@@ -20,7 +20,7 @@ pub struct Report {
 pub struct Table {
     /// Title in a few words.
     pub title: String,
-    /// Description of the rows, and of the case that ratios are to.
+    /// Description of the rows, and of the case that ratios refer to.
     pub about: String,
     /// Names of the columns that tell rows apart.
     pub labels: Vec<String>,
@@ -30,7 +30,7 @@ pub struct Table {
     pub figures: Vec<String>,
     /// The cases.
     pub rows: Vec<Row>,
-    /// Warnings about some of them.
+    /// Warnings about cases.
     pub warnings: Vec<String>,
 }
 
@@ -41,9 +41,9 @@ pub struct Row {
     pub labels: Vec<String>,
     /// Rate over the rate of the case it is compared with, sample by sample.
     pub ratio: Spread,
-    /// Units of work a second.
+    /// Units of work per second.
     pub rate: Spread,
-    /// The rates of all samples, in their order.
+    /// Rates of all samples, in their order.
     pub samples: Vec<f64>,
     /// Further figures; `None` gives an empty cell.
     pub figures: Vec<Option<f64>>,
@@ -61,7 +61,7 @@ pub struct Spread {
 }
 
 impl Spread {
-    /// Computes median and quartiles of some values; all 0 for none.
+    /// Computes median and quartiles of some values; all 0 without values.
     pub fn of(values: &[f64]) -> Spread {
         let mut sorted = values.to_vec();
         sorted.sort_by(f64::total_cmp);
@@ -83,23 +83,25 @@ impl Spread {
 }
 
 impl Table {
-    /// Returns the heads of the columns: labels, ratio and its quartiles, rate and its relative spread,
-    /// further figures.
+    /// Returns the heads of the columns: labels, ratio with quartiles, rate with relative spread, further figures.
     pub fn heads(&self) -> Vec<String> {
         let fixed = ["ratio".to_owned(), "quartiles".to_owned(), self.unit.clone(), "spread".to_owned()];
         self.labels.iter().chain(&fixed).chain(&self.figures).cloned().collect()
     }
 
-    /// Returns a row's cells under [`Table::heads`], for people.
-    pub fn cells(&self, row: &Row) -> Vec<String> {
-        let fixed = [
-            number(row.ratio.median),
-            format!("{} .. {}", number(row.ratio.low), number(row.ratio.high)),
-            number(row.rate.median),
-            format!("{:.1} %", 100.0 * row.rate.relative()),
-        ];
-        let figures = row.figures.iter().map(|f| f.map_or_else(String::new, number));
-        row.labels.iter().cloned().chain(fixed).chain(figures).collect()
+    /// Returns the cells of all rows under [`Table::heads`].
+    pub fn cells(&self) -> Vec<Vec<String>> {
+        let cells = |row: &Row| {
+            let fixed = [
+                number(row.ratio.median),
+                format!("{} .. {}", number(row.ratio.low), number(row.ratio.high)),
+                number(row.rate.median),
+                format!("{:.1} %", 100.0 * row.rate.relative()),
+            ];
+            let figures = row.figures.iter().map(|f| f.map_or_else(String::new, number));
+            row.labels.iter().cloned().chain(fixed).chain(figures).collect()
+        };
+        self.rows.iter().map(cells).collect()
     }
 }
 

@@ -1,8 +1,8 @@
 //! Light trees: time to build and size of the cuts through them, for both families of builders.
 
-use super::measure::Case;
-use super::setting::Setting;
-use super::{Benchmark, Clock, Context, Kind, Table};
+use super::lit_scene::LitScene;
+use super::measure::{Case, Clock, Experiment};
+use super::{Benchmark, Context, Kind, Table};
 use base::progress::Control;
 use std::hint::black_box;
 use transport::lightcut::{CutSettings, Lightcut, Transfer};
@@ -10,18 +10,18 @@ use transport::lights::{Family, LightPass, LightPassSettings, LightTrees, light_
 
 pub(super) const BENCHMARK: Benchmark = Benchmark {
     name: "trees",
-    about: "Light trees built a second, and the cuts through them",
+    about: "Light trees built per second, and the cuts through them",
     kind: Kind::Parts { needs_scene: true, run },
 };
 
-/// Indirect virtual lights.
+/// Numbers of indirect virtual lights.
 const LIGHTS: [u32; 2] = [300_000, 1_000_000];
 /// Number of eye samples whose cuts are averaged.
 const CUTS: usize = 1024;
 
 fn run(context: &Context) -> Vec<Table> {
-    let Some(setting) = Setting::new(context) else { return Vec::new() };
-    let (world, diagonal) = (setting.world, setting.world.diagonal);
+    let Some(lit) = LitScene::new(context) else { return Vec::new() };
+    let (world, diagonal) = (lit.world, lit.world.diagonal);
     let mut cases = Vec::new();
     for indirect in LIGHTS {
         (context.say)(&format!("{indirect} indirect lights"));
@@ -32,35 +32,36 @@ fn run(context: &Context) -> Vec<Table> {
         let against = cases.len();
         for family in [Family::Divisive, Family::Agglomerative] {
             let trees = LightTrees::build(&sets, profiles.clone(), diagonal, family, &Control::new());
-            let cuts = [0.02, 0.01].map(|epsilon| Some(mean_cut(&setting, &trees, epsilon)));
+            let cuts = [0.02, 0.01].map(|epsilon| mean_cut(&lit, &trees, epsilon));
             let (sets, spots) = (sets.clone(), profiles.clone());
             let labels = [&indirect.to_string(), &*format!("{family:?}").to_lowercase()];
             let lights = trees.vpls.len() as f64;
-            let mut case = Case::new(&labels, against, lights, move || {
+            let build = move || {
                 black_box(LightTrees::build(&sets, spots.clone(), diagonal, family, &Control::new()));
-            });
-            case.figures = cuts.to_vec();
-            cases.push(case);
+            };
+            cases.push(Case::new(&labels, against, lights, build).with(&cuts));
         }
     }
-    vec![Table::measured(
-        (
-            "Light trees",
-            "Virtual lights clustered a second. Ratio to the divisive family. Cuts of single points, not capped.",
-        ),
-        (&["indirect lights", "family"], "M lights/s", &["mean cut at 2 %", "at 1 %"]),
-        (Clock::Process, &context.settings, 1e-6),
+    let experiment = Experiment {
+        title: "Light trees",
+        about: "Virtual lights clustered per second. Ratio to the divisive family. Cuts of single points, not capped.",
+        labels: &["indirect lights", "family"],
+        unit: "M lights/s",
+        scale: 1e-6,
+        figures: &["mean cut at 2 %", "at 1 %"],
+        clock: Clock::Process,
         cases,
-    )]
+    };
+    vec![experiment.measure(&context.settings)]
 }
 
-/// Computes the mean size of the cuts of eye samples spread over the picture.
-fn mean_cut(setting: &Setting, trees: &LightTrees, epsilon: f32) -> f64 {
+/// Computes the mean size of the cuts of eye samples spread over the image.
+fn mean_cut(lit: &LitScene, trees: &LightTrees, epsilon: f32) -> f64 {
     let settings = CutSettings { epsilon, max_cut: usize::MAX, ..CutSettings::default() };
-    let transfer = Transfer::new(trees, setting.world.diagonal);
+    let transfer = Transfer::new(trees, lit.world.diagonal);
     let mut cut = Lightcut::new();
-    for sample in (0..setting.samples.len()).step_by(setting.samples.len().div_ceil(CUTS).max(1)) {
-        cut.gather(&transfer, setting.world, &setting.reflector(sample), &settings);
+    for sample in (0..lit.samples.len()).step_by(lit.samples.len().div_ceil(CUTS).max(1)) {
+        cut.gather(&transfer, lit.world, &lit.surface(sample), &settings);
     }
     cut.counts.clusters as f64 / cut.counts.cuts.max(1) as f64
 }

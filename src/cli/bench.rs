@@ -7,18 +7,18 @@ use super::{files, opened, study, talk, threads};
 use anyhow::anyhow;
 use base::film::atomic;
 use bench::export::{WRITERS, terminal};
-use bench::{Benchmark, Context, Kind, Settings};
+use bench::{Context, Kind, Settings};
 use readers::LoadOptions;
 use std::path::PathBuf;
 
 /// Runs the command.
 pub fn run(args: BenchArgs) -> Result<(), Failure> {
-    let Some(benchmark) = Benchmark::named(&args.benchmark) else {
+    let Some(benchmark) = bench::named(&args.benchmark) else {
         return Err(Failure::usage(anyhow!("there is no benchmark {}", args.benchmark)));
     };
     let name = benchmark.name;
     let (needs_scene, measure) = match benchmark.kind {
-        Kind::Study { .. } | Kind::OwnScenes { .. } => return study::run(benchmark, args),
+        Kind::Study { .. } => return study::run(benchmark, args),
         Kind::Parts { needs_scene, run } => (needs_scene, run),
     };
     let remedy = match (needs_scene, args.scenes.len()) {

@@ -1,4 +1,4 @@
-//! Benchmarks that render whole pictures: runs them, prints their table, writes their files into one folder.
+//! Benchmarks that render whole images: runs a study, prints its tables, and writes its files into one folder.
 
 use super::bench_args::BenchArgs;
 use super::exit::Failure;
@@ -6,14 +6,11 @@ use super::files::write;
 use super::{interrupt, talk, threads};
 use anyhow::{Context as _, anyhow};
 use base::progress::Control;
-use bench::study::{Plan, ReferenceSettings, Results, SAMPLES, Study, StudyError, file_of};
-use bench::{Benchmark, Kind};
+use bench::study::{Plan, ReferenceSettings, SAMPLES, Study, StudyError, file_of};
+use bench::{Benchmark, Kind, Scenes};
 use render::session::OpenError;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-
-/// Function that renders and judges the pictures of a study.
-type Render = Box<dyn Fn(&Study) -> Result<Results, StudyError> + Send + Sync>;
 
 /// Runs the study.
 pub fn run(benchmark: &Benchmark, args: BenchArgs) -> Result<(), Failure> {
@@ -24,22 +21,21 @@ pub fn run(benchmark: &Benchmark, args: BenchArgs) -> Result<(), Failure> {
             "bench {name} writes JSON, Markdown and HTML into --output FOLDER, and has no --seconds"
         )));
     }
-    let (pixels, repeats, run): (_, _, Render) = match benchmark.kind {
-        Kind::Study { scenes, pixels, run } => {
-            let files = scene_files(&args, scenes);
-            if files.is_empty() {
-                return Err(Failure::usage(anyhow!("bench {name}: name a scene behind it")));
-            }
-            (pixels, 1, Box::new(move |study| run(study, &files)))
-        }
-        Kind::OwnScenes { pixels, repeats, run } if args.scenes.is_empty() => {
-            (pixels, repeats, Box::new(run))
-        }
-        Kind::OwnScenes { .. } => {
-            return Err(Failure::usage(anyhow!("bench {name}: leave the scene out; it makes its own")));
-        }
-        Kind::Parts { .. } => return Err(Failure::usage(anyhow!("{name} is no study"))),
+    let Kind::Study { scenes, pixels, run } = &benchmark.kind else {
+        return Err(Failure::usage(anyhow!("{name} is no study")));
     };
+    let (files, repeats) = match scenes {
+        Scenes::Files(defaults) => (scene_files(&args, defaults), 1),
+        Scenes::Own(seeds) => (args.scenes.clone(), *seeds),
+    };
+    let remedy = match (scenes, files.is_empty()) {
+        (Scenes::Files(_), true) => Some("name a scene behind it"),
+        (Scenes::Own(_), false) => Some("leave the scene out; it makes its own"),
+        _ => None,
+    };
+    if let Some(remedy) = remedy {
+        return Err(Failure::usage(anyhow!("bench {name}: {remedy}")));
+    }
     let control = Arc::new(Control::new());
     interrupt::cancel_on_signal(&control).context("cannot catch signals").map_err(Failure::render)?;
     let defaults = ReferenceSettings::default();
@@ -48,7 +44,7 @@ pub fn run(benchmark: &Benchmark, args: BenchArgs) -> Result<(), Failure> {
         folder: folder.clone(),
         threads: threads::count(args.threads),
         repeats: args.repeats.map_or(repeats, |n| n as usize),
-        resolution: args.study.resolution.map_or(pixels, |r| r.0),
+        resolution: args.study.resolution.map_or(*pixels, |r| r.0),
         reference: ReferenceSettings {
             spp: args.study.reference_spp.unwrap_or(defaults.spp),
             seconds: args.study.reference_seconds.unwrap_or(defaults.seconds),
@@ -58,12 +54,12 @@ pub fn run(benchmark: &Benchmark, args: BenchArgs) -> Result<(), Failure> {
     };
     let pool = threads::pool(plan.threads)?;
     let study = Study::new(plan, &control, &|what| talk::note(what)).map_err(failure)?;
-    let results = pool.install(|| run(&study)).map_err(failure)?;
+    let results = pool.install(|| run(&study, &files)).map_err(failure)?;
     let markdown = results.document.markdown();
-    talk::print(&markdown)?;
+    talk::print(markdown)?;
     let file = |extension: &str| folder.join(name).with_extension(extension);
     write(&file("json"), &format!("{:#}\n", results.json))?;
-    write(&file("md"), &markdown)?;
+    write(&file("md"), markdown)?;
     write(&file("html"), &results.document.html())
 }
 
@@ -81,7 +77,7 @@ fn failure(error: StudyError) -> Failure {
         StudyError::Open(OpenError::Scene(_)) | StudyError::Compare(_) => Failure::input(error),
         StudyError::Knob { .. } => Failure::usage(error),
         StudyError::Open(OpenError::Build { .. }) | StudyError::Denoise(_) => Failure::render(error),
-        StudyError::Folder { .. } | StudyError::Scene { .. } | StudyError::Write(_) => Failure::output(error),
+        StudyError::File { .. } | StudyError::Write(_) => Failure::output(error),
         StudyError::Interrupted => Failure::interrupted(error),
     }
 }

@@ -1,11 +1,11 @@
-//! CSV (RFC 4180): one line a case, the same columns for all tables.
+//! CSV (RFC 4180): one line per case, the same columns for all tables.
 
 use crate::Report;
 
 const HEAD: &str =
     "benchmark,scene,table,case,ratio,ratio low,ratio high,rate,rate low,rate high,unit,figures";
 
-/// Returns a head, then a line a case.
+/// Returns a head, then a line per case.
 pub fn csv(report: &Report) -> String {
     let mut text = format!("{HEAD}\r\n");
     for table in &report.tables {

@@ -1,17 +1,16 @@
-//! Export formats of reports, one a file.
+//! Export formats of reports, one per file; JSON is serde's.
 
 mod csv;
-mod json;
-mod plot;
 mod terminal;
 
 use super::Report;
 use super::document::{Document, Grid};
+use super::plot::bars;
 
 pub use terminal::terminal;
 
 /// Writers of all file formats, in the order of their options on the command line.
-pub const WRITERS: [fn(&Report) -> String; 4] = [json::json, csv::csv, markdown, html];
+pub const WRITERS: [fn(&Report) -> String; 4] = [json, csv::csv, markdown, html];
 
 /// Returns the headline of a report.
 fn headline(report: &Report) -> String {
@@ -21,26 +20,31 @@ fn headline(report: &Report) -> String {
     }
 }
 
-/// Markdown tables.
-fn markdown(report: &Report) -> String {
-    document(report).markdown()
+/// Returns the report with every sample as one object.
+fn json(report: &Report) -> String {
+    format!("{:#}\n", serde_json::json!(report))
 }
 
-/// One self-contained page: tables, and their ratios as bars.
+/// Returns Markdown tables.
+fn markdown(report: &Report) -> String {
+    document(report).markdown().to_owned()
+}
+
+/// Returns one self-contained page: tables, and their ratios as bars.
 fn html(report: &Report) -> String {
     document(report).html()
 }
 
-/// The report for people, a section a table.
+/// Returns a document with a section per table.
 fn document(report: &Report) -> Document {
     let mut document = Document::new(headline(report));
     document.facts(&report.facts);
     for table in &report.tables {
         document.heading(2, &table.title);
         document.text(&table.about);
-        document.figure(plot::bars(table));
-        let rows = table.rows.iter().map(|row| table.cells(row)).collect();
-        document.grid(Grid { names: table.labels.len(), heads: table.heads(), rows, ..Grid::default() });
+        document.figure(&bars(table));
+        let names = table.labels.len();
+        document.grid(&Grid { names, heads: table.heads(), rows: table.cells(), ..Grid::default() });
         table.warnings.iter().for_each(|warning| document.warning(warning));
     }
     document
@@ -87,7 +91,7 @@ mod tests {
 
     #[test]
     fn json_is_the_whole_report() {
-        let value: serde_json::Value = serde_json::from_str(&json::json(&report())).unwrap();
+        let value: serde_json::Value = serde_json::from_str(&json(&report())).unwrap();
         assert_eq!(value["tables"][0]["rows"][1]["ratio"]["median"], 2.0);
         assert_eq!(value["tables"][0]["rows"][0]["samples"][1], 2.5);
     }

@@ -12,7 +12,7 @@ pub fn terminal(report: &Report) -> String {
     for table in &report.tables {
         text += &format!("\n{}\n{}\n", table.title, table.about);
         let mut lines = vec![table.heads()];
-        lines.extend(table.rows.iter().map(|row| table.cells(row)));
+        lines.extend(table.cells());
         let width =
             |column: usize| lines.iter().map(|cells| cells[column].chars().count()).max().unwrap_or(0);
         let widths: Vec<usize> = (0..lines[0].len()).map(width).collect();

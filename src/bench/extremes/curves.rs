@@ -21,7 +21,7 @@ pub struct Curve {
 
 /// Powers of ten between two exponents.
 fn decades(exponents: std::ops::RangeInclusive<i32>, step: usize) -> Vec<f64> {
-    // Of text, for products of tenths are not the numbers nearest to those powers.
+    // Parses text: products of tenths are not the numbers nearest to these powers.
     exponents.step_by(step).filter_map(|n| format!("1e{n}").parse().ok()).collect()
 }
 
@@ -153,7 +153,7 @@ fn view(sizes: f64) -> String {
     let distance = 2.5 + 5.0 * sizes;
     // The open side fills the film.
     let fov = 2.0 * (2.5 / (distance - 2.5)).atan().to_degrees();
-    // Its lamp would be seen edge on, as a bright line of less than a pixel.
+    // A room of this distance has no lamp: a lamp seen edge on is a bright line thinner than a pixel.
     room(&Room { distance, fov, power: 0.0, ..Room::default() })
         + "[[light]]\nkind = \"point\"\nposition = [0, 1.5, 0]\nintensity = [5, 5, 5]\n"
 }

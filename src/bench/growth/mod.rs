@@ -1,35 +1,30 @@
-//! Growth of time, and of error, with the picture, the number of lamps and the number of triangles.
+//! Growth of time, and of error, with the size of the image, the number of lamps and the number of triangles.
 //!
-//! Pictures are those of the default method. Along a scene's pixels there is time alone; along the lamps the error at
-//! equal samples and at equal time, before denoising, for it is light's noise that many lamps could add.
+//! Images are those of the default method. Along the pixels and triangles, only times are measured. Along the lamps,
+//! errors are measured at equal samples and at equal time, before denoising: many lamps could add noise.
 //!
-//! Units: processor seconds over all threads; errors are relative root mean squares, without the worst pixel of a
-//! thousand and the reference's noise.
+//! Units: errors are relative root mean squares, without the worst pixel of a thousand and the reference's noise.
 
-mod document;
 mod scenes;
 
-use super::study::{Candidate, Errors, Results, Run, Study, StudyError, Subject};
-use super::{Benchmark, Kind};
+use super::plot::{Series, scatter};
+use super::study::{
+    Answer, Axis, Candidate, Cell, Column, Question, Results, Shot, Study, StudyError, Subject, Truth, figure,
+};
+use super::{Benchmark, Kind, Scenes};
 use base::stats::{Stage, Stopwatch};
 use render::method::Method;
-use serde::Serialize;
-use std::fs;
-use std::io::BufWriter;
-use std::path::PathBuf;
-use transport::paths::Estimand;
+use serde_json::json;
+use std::path::{Path, PathBuf};
 use world::view::View;
 
 pub(super) const BENCHMARK: Benchmark = Benchmark {
     name: "growth",
     about: "How time and error grow with the picture, with lamps and with triangles",
-    kind: Kind::Study { scenes: &["cornell", "nave"], pixels: [512, 512], run },
+    kind: Kind::Study { scenes: Scenes::Files(&["cornell", "nave"]), pixels: [512, 512], run },
 };
 
-/// Quantities that grow.
-const KNOBS: [&str; 3] = ["pixels", "lamps", "triangles"];
-
-/// Factors on the length of each side of the picture.
+/// Factors on the length of each side of the image.
 const SIDES: [f64; 5] = [0.25, 0.5, 1.0, 2.0, 4.0];
 
 /// Numbers of lamps.
@@ -38,128 +33,138 @@ const LAMPS: [u32; 4] = [1, 10, 100, 1000];
 /// Numbers of triangles.
 const TRIANGLES: [u32; 3] = [100_000, 1_000_000, 10_000_000];
 
-/// Stages of the cache, as against those of the eye pass and of denoising.
+/// Caption of the tables.
+const LEGEND: &str = "Times of the default's images. Growth is from the first row to the last and, in brackets, the \
+    exponent: 1 if time is proportional to the quantity. Errors are relative root mean squares before denoising. At equal \
+    time they are multiplied by the root of the time, as if samples were added or left out.";
+
+/// Stages of the cache, as opposed to the eye pass and denoising.
 const CACHE: [Stage; 5] = [Stage::LightPass, Stage::Tree, Stage::Records, Stage::Splat, Stage::Render];
 
-/// All results.
-#[derive(Serialize)]
-struct Growth {
-    facts: Vec<(String, String)>,
-    series: Vec<Series>,
+/// Times and errors over a quantity.
+const QUESTION: Question = Question {
+    error: Truth::None,
+    table: &[
+        Column::new("value", "scene", |_, s| Cell { exact: json!(s.value), text: s.value.to_string() }),
+        Column::new("load", "load and build", |_, s| s.load.map_or(Cell::MISSING, Cell::seconds)),
+        Column::new("eye_pass", "eye pass", |_, s| Cell::seconds(s.counted.seconds(&[Stage::EyePass]))),
+        Column::new("cache", "cache", |_, s| Cell::seconds(s.counted.seconds(&CACHE))),
+        Column::new("denoising", "denoising", |_, s| Cell::seconds(s.counted.seconds(&[Stage::Denoise]))),
+        Column::new("whole", "whole", |_, s| Cell::seconds(s.seconds())),
+        Column::new("error", "error", |_, s| error(s).map_or(Cell::MISSING, Cell::figure)),
+        Column::new("", "error at equal time", |_, s| at_equal_time(s).map_or(Cell::MISSING, Cell::figure)),
+    ],
+    ..Question::PLAIN
+};
+
+/// A curve of a plot: name, colour and value of an image.
+type Curve = (&'static str, &'static str, fn(&Shot) -> Option<f64>);
+
+/// Curves of the times.
+const TIMES: [Curve; 4] = [
+    ("eye pass", "#d00", |s| Some(s.counted.seconds(&[Stage::EyePass]))),
+    ("cache", "#07c", |s| Some(s.counted.seconds(&CACHE))),
+    ("denoising", "#0a7", |s| Some(s.counted.seconds(&[Stage::Denoise]))),
+    ("whole", "#000", |s| Some(s.seconds())),
+];
+
+/// Curves of the errors.
+const ERRORS: [Curve; 2] = [("at equal samples", "#d00", error), ("at equal time", "#07c", at_equal_time)];
+
+/// Returns the error, if there is a reference.
+fn error(shot: &Shot) -> Option<f64> {
+    shot.errors.rel_mse.is_finite().then(|| shot.errors.rel_rmse())
 }
 
-/// Results along a quantity.
-#[derive(Serialize)]
-struct Series {
-    name: String,
-    /// The quantity.
-    knob: &'static str,
-    points: Vec<Point>,
-}
-
-/// Figures of a picture.
-#[derive(Serialize)]
-struct Point {
-    /// Number of pixels, lamps or triangles.
-    value: f64,
-    /// Seconds that loading and building the acceleration structure take, where they are measured.
-    load: Option<f64>,
-    eye_pass: f64,
-    cache: f64,
-    denoising: f64,
-    /// Seconds of all stages that make the picture.
-    whole: f64,
-    /// Relative error, where it is measured.
-    error: Option<f64>,
+/// Returns the error at the time of another image whose samples are as many.
+fn at_equal_time(shot: &Shot) -> Option<f64> {
+    Some(error(shot)? * shot.seconds().sqrt())
 }
 
 fn run(study: &Study, files: &[PathBuf]) -> Result<Results, StudyError> {
-    let knobs = &study.plan.knobs;
-    if let Some(name) = knobs.iter().find(|name| !KNOBS.contains(&name.as_str())) {
-        return Err(StudyError::Knob { name: name.clone(), known: KNOBS.join(", ") });
+    let knobs = study.plan.knobs(&["pixels", "lamps", "triangles"])?;
+    let of = |knob| Question { axis: Axis::Value(knob), ..QUESTION };
+    let default = [Candidate::new("default", Method::default())];
+    let noisy = default.clone().map(|candidate| Candidate { denoise: false, ..candidate });
+    let mut results = Results::new(study, "Growth", LEGEND);
+    for file in files.iter().filter(|_| knobs.contains(&"pixels")) {
+        let scenes = SIDES.iter().map(|&side| enlarged(study, file, side));
+        let answer = study.ask(Question { images: &default, ..of("pixels") }, scenes)?;
+        section(&mut results, &format!("Pixels of {}", answer.scene), &answer);
     }
-    let is_chosen = |knob: &str| knobs.is_empty() || knobs.iter().any(|name| name == knob);
-    let mut growth = Growth { facts: study.facts(), series: Vec::new() };
-    if is_chosen("pixels") {
-        for file in files {
-            growth.series.push(pixels(study, study.subject(file)?)?);
-        }
+    if knobs.contains(&"lamps") {
+        let question = Question { images: &noisy, error: Truth::Pixels, ..of("lamps") };
+        let answer = study.ask(question, LAMPS.iter().map(|&count| hall(study, count)))?;
+        section(&mut results, "Lamps in a hall", &answer);
     }
-    if is_chosen("lamps") {
-        growth.series.push(lamps(study)?);
+    if knobs.contains(&"triangles") {
+        let scenes = TRIANGLES.iter().map(|&count| dunes(study, count));
+        let answer = study.ask(Question { images: &default, ..of("triangles") }, scenes)?;
+        section(&mut results, "Triangles of dunes", &answer);
     }
-    if is_chosen("triangles") {
-        growth.series.push(triangles(study)?);
-    }
-    Ok(Results { json: serde_json::json!(growth), document: document::document(&growth) })
+    Ok(results)
 }
 
-fn pixels(study: &Study, mut subject: Subject) -> Result<Series, StudyError> {
-    let candidate = Candidate::new("default", Method::default());
-    let mut points = Vec::new();
-    for side in SIDES {
-        let film = study.plan.resolution.map(|length| (f64::from(length) * side).round().max(1.0) as u32);
-        subject.view = View::whole(subject.session.cameras.still, film);
-        let run = study.run(&subject, &candidate)?;
-        points.push(Point::new(subject.view.window.pixel_count() as f64, &run));
-    }
-    Ok(Series { name: format!("Pixels of {}", subject.name), knob: KNOBS[0], points })
+/// Loads a scene, with each side of its image times a factor.
+fn enlarged(study: &Study, file: &Path, side: f64) -> Result<Subject, StudyError> {
+    let subject = study.subject(file)?;
+    let film = study.plan.resolution.map(|length| (f64::from(length) * side).round().max(1.0) as u32);
+    let view = View::whole(subject.session.cameras.still, film);
+    Ok(Subject { value: view.window.pixel_count() as f64, view, ..subject })
 }
 
-fn lamps(study: &Study) -> Result<Series, StudyError> {
-    let candidate =
-        Candidate { denoise: false, ..Candidate::new("default, not denoised", Method::default()) };
-    let mut points = Vec::new();
-    for count in LAMPS {
-        let file = study.plan.folder.join(format!("{count} lamps.toml"));
-        fs::write(&file, scenes::hall(count))
-            .map_err(|source| StudyError::Scene { path: file.clone(), source })?;
-        let subject = study.subject(&file)?;
-        let reference = study.reference(&subject, Estimand::Pixels)?;
-        let run = study.run(&subject, &candidate)?;
-        let error = Errors::against(&run.color, &reference)?.rel_rmse();
-        points.push(Point { error: Some(error), ..Point::new(count.into(), &run) });
-    }
-    Ok(Series { name: "Lamps in a hall".to_owned(), knob: KNOBS[1], points })
+/// Writes the hall with a number of lamps, and loads it.
+fn hall(study: &Study, count: u32) -> Result<Subject, StudyError> {
+    let subject = study.own_subject(&format!("{count} lamps"), &scenes::hall(count))?;
+    Ok(Subject { value: count.into(), ..subject })
 }
 
-fn triangles(study: &Study) -> Result<Series, StudyError> {
-    let candidate = Candidate::new("default", Method::default());
-    let mut points = Vec::new();
-    for count in TRIANGLES {
-        let file = study.plan.folder.join(format!("{count} triangles.toml"));
-        let mesh = study.plan.folder.join(scenes::mesh_name(count));
-        let write = || {
-            if !mesh.exists() {
-                scenes::write_dunes(count, BufWriter::new(fs::File::create(&mesh)?))?;
+/// Writes the dunes of a number of triangles, and loads them in a measured time.
+fn dunes(study: &Study, count: u32) -> Result<Subject, StudyError> {
+    let mesh = study.plan.folder.join(scenes::mesh_name(count));
+    if !mesh.exists() {
+        scenes::write_dunes(count, &mesh)
+            .map_err(|source| StudyError::File { path: mesh.clone(), source })?;
+    }
+    let watch = Stopwatch::start();
+    let subject = study.own_subject(&format!("{count} triangles"), &scenes::dunes(count))?;
+    let load = Some(watch.elapsed().cpu_seconds);
+    Ok(Subject { value: subject.triangles as f64, load, ..subject })
+}
+
+fn section(results: &mut Results, name: &str, answer: &Answer) {
+    let facts = json!({ "name": name, "knob": answer.axis() });
+    results.push("series", facts, json!({ "points": answer.rows() }));
+    results.document.heading(2, name);
+    let mut grid = answer.grid(&answer.shots);
+    grid.heads[0] = answer.axis().to_owned();
+    if let [first, .., last] = &answer.shots[..] {
+        let grown = |column: &Column<Shot>| {
+            let [a, b] = [first, last].map(|shot| (column.cell)(answer, shot).exact.as_f64());
+            let (a, b) = (a.unwrap_or(0.0), b.unwrap_or(0.0));
+            match a > 0.0 && b > 0.0 {
+                true => format!("{} ({:.2})", figure(b / a), (b / a).ln() / (last.value / first.value).ln()),
+                false => "-".to_owned(),
             }
-            fs::write(&file, scenes::dunes(count))
         };
-        write().map_err(|source| StudyError::Scene { path: file.clone(), source })?;
-        let watch = Stopwatch::start();
-        let subject = study.subject(&file)?;
-        let load = watch.elapsed().cpu_seconds;
-        let run = study.run(&subject, &candidate)?;
-        points.push(Point { load: Some(load), ..Point::new(subject.triangles as f64, &run) });
+        let columns =
+            QUESTION.table.iter().filter(|column| grid.heads.iter().any(|head| head == column.head));
+        grid.rows.push(["growth".to_owned()].into_iter().chain(columns.map(grown)).collect());
     }
-    Ok(Series { name: "Triangles of dunes".to_owned(), knob: KNOBS[2], points })
+    results.document.grid(&grid);
+    plot(results, answer, "processor seconds", &TIMES);
+    if answer.reference.is_some() {
+        plot(results, answer, "relative error", &ERRORS);
+    }
 }
 
-impl Point {
-    fn new(value: f64, run: &Run) -> Point {
-        Point {
-            value,
-            load: None,
-            eye_pass: run.seconds(&[Stage::EyePass]),
-            cache: run.seconds(&CACHE),
-            denoising: run.seconds(&[Stage::Denoise]),
-            whole: run.seconds(&Stage::ALL),
-            error: None,
-        }
-    }
-
-    /// Error at the time of another picture whose samples are as many.
-    fn error_at_equal_time(&self) -> Option<f64> {
-        Some(self.error? * self.whole.sqrt())
-    }
+fn plot(results: &mut Results, answer: &Answer, name: &str, curves: &[Curve]) {
+    let series = |(name, colour, at): &Curve| Series {
+        name: (*name).to_owned(),
+        colour,
+        joined: true,
+        points: answer.points(&answer.shots, at),
+    };
+    let series: Vec<Series> = curves.iter().map(series).collect();
+    results.document.figure(&scatter(answer.axis(), name, &series));
 }

@@ -2,11 +2,15 @@
 
 use base::sampling::owen_sobol_2d;
 use std::fmt::Write as _;
-use std::io::{self, Write};
+use std::fs::File;
+use std::io::{self, BufWriter, Write};
+use std::path::Path;
 
-/// Half the length of the hall's sides, its height, and half the distance between its pillars.
+/// Half the length of the hall's sides.
 const HALF: f32 = 12.0;
+/// Height of the hall.
 const HEIGHT: f32 = 4.0;
+/// Half the distance between the hall's pillars.
 const PILLARS: f32 = 3.0;
 
 /// Power of all lamps together, W.
@@ -18,7 +22,7 @@ const LAMP_AREA: f32 = 0.01;
 /// Length of the sides of the dunes.
 const LENGTH: f32 = 10.0;
 
-/// A hall with pillars under a ceiling of `count` square lamps, which have the same power and area together.
+/// Returns a hall with pillars under `count` square lamps, whose total power and area do not depend on their number.
 pub fn hall(count: u32) -> String {
     let mut text = "[[material]]\nname = \"wall\"\nkind = \"diffuse\"\nreflectance = [0.7, 0.65, 0.6]\n\
         [camera]\norigin = [-10, 1.7, 11]\ntarget = [3, 1.2, -4]\nfov = 70\n"
@@ -62,12 +66,12 @@ pub fn hall(count: u32) -> String {
     text
 }
 
-/// Name of the file of dunes of `count` triangles.
+/// Returns the name of the file of dunes of `count` triangles.
 pub fn mesh_name(count: u32) -> String {
     format!("dunes {count}.ply")
 }
 
-/// Dunes of `count` triangles under a lamp and a sky.
+/// Returns dunes of `count` triangles under a sun and a sky.
 pub fn dunes(count: u32) -> String {
     format!(
         "[[material]]\nname = \"sand\"\nkind = \"diffuse\"\nreflectance = [0.7, 0.6, 0.4]\n\
@@ -79,7 +83,8 @@ pub fn dunes(count: u32) -> String {
 }
 
 /// Writes the mesh of the dunes, a grid of about `count` triangles, as binary PLY.
-pub fn write_dunes(count: u32, mut to: impl Write) -> io::Result<()> {
+pub fn write_dunes(count: u32, path: &Path) -> io::Result<()> {
+    let mut to = BufWriter::new(File::create(path)?);
     let cells = (0.5 * f64::from(count)).sqrt().round() as u32;
     let vertices = cells + 1;
     write!(

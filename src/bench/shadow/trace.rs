@@ -1,85 +1,120 @@
-//! Segments as they are asked for, kept to be traced again.
+//! Shadow rays as the renderer's cuts ask for them, recorded to be traced again.
 
-use super::orders::{Order, Orders};
-use crate::setting::{Dice, Setting};
-use base::math::{LANES, Rgb, Vec3x16, first_lanes, lanes_in};
+use crate::lit_scene::LitScene;
+use base::math::{LANES, lanes_in};
 use embree::{Ray, Rays16};
 use glam::Vec3;
 use std::cell::RefCell;
-use transport::lightcut::{PacketVisibility, RayVisibility, Receiver, ReceiverPacket, Visibility, to_vpl};
-use transport::lights::{LightNode, Vpl};
+use transport::lightcut::{
+    CutSettings, Lightcut, MIN_SHARED, PacketLightcut, PacketVisibility, Receiver, ReceiverPacket,
+    Visibility, to_vpl,
+};
+use transport::lights::{LightNode, Origin, Vpl};
+use transport::radiance_cache::CacheSettings;
 
-/// Up to sixteen segments.
+/// Points that cuts light.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Order {
+    /// Pixels of lightcuts.
+    Pixels,
+    /// Irradiance at the spacing of the finest cache records, from indirect virtual lights.
+    Records,
+}
+
+/// Up to sixteen shadow rays.
 #[derive(Clone)]
 pub struct SegmentPacket {
-    /// True if they run from neighbouring points to one light.
+    /// True if the rays run from neighbouring points to one light.
     pub neighbours: bool,
     pub rays: Rays16,
     pub valid: u16,
-    /// Key of the light that each runs to.
-    pub keys: [u32; 16],
+    /// Key of each ray's light.
+    pub keys: [u32; LANES],
 }
 
-/// Segments in an order.
+/// Shadow rays in the order of their queries.
 pub struct Trace {
     pub name: &'static str,
-    /// True if most packets run from neighbouring points to one light.
-    pub neighbours: bool,
-    /// By stretches of work in which a cache lives.
+    /// True if neighbouring points share cuts, so that most packets run from these to one light.
+    pub shared: bool,
+    /// Packets by stretch of work, at whose end an occluder cache is cleared.
     pub chunks: Vec<Vec<SegmentPacket>>,
-    /// Number of receivers that they were asked for.
-    pub points: usize,
 }
 
 impl Trace {
-    /// All packets in order.
+    /// Records the rays of both orders, with a cut per point and with shared cuts.
+    pub fn all(lit: &LitScene) -> Vec<Trace> {
+        let record = |(name, order, shared)| Trace {
+            name,
+            shared,
+            chunks: stretches(lit, order).iter().map(|points| chunk(lit, order, points, shared)).collect(),
+        };
+        let names = [
+            ("pixels, alone", Order::Pixels, false),
+            ("pixels, shared", Order::Pixels, true),
+            ("records, alone", Order::Records, false),
+            ("records, shared", Order::Records, true),
+        ];
+        names.into_iter().map(record).filter(|trace| trace.rays() > 0).collect()
+    }
+
+    /// Returns the packets in order; of shared cuts, without the single rays of points that share with no other.
     pub fn packets(&self) -> impl Iterator<Item = &SegmentPacket> {
-        self.chunks.iter().flatten()
+        self.chunks.iter().flatten().filter(|p| p.neighbours == self.shared)
     }
 
-    /// Coherent packets, of shared cuts, without the rays of points that share with none.
-    pub fn bundles(&self) -> impl Iterator<Item = &SegmentPacket> {
-        self.packets().filter(|p| p.neighbours == self.neighbours)
-    }
-
-    /// Number of segments.
+    /// Returns the number of rays in [`Trace::packets`].
     pub fn rays(&self) -> u64 {
-        count(self.packets())
+        self.packets().map(|p| u64::from(p.valid.count_ones())).sum()
     }
 }
 
-/// Number of segments that packets hold.
-pub fn count<'a>(packets: impl IntoIterator<Item = &'a SegmentPacket>) -> u64 {
-    packets.into_iter().map(|p| u64::from(p.valid.count_ones())).sum()
+impl SegmentPacket {
+    /// Returns the rays with the keys of their lights.
+    pub fn singles(&self) -> impl Iterator<Item = (Ray, u32)> + '_ {
+        lanes_in(self.valid).map(|lane| (self.rays.get(lane), self.keys[lane]))
+    }
 }
 
-/// One trace of each kind.
-pub struct Traces {
-    /// Packings of lights drawn at random.
-    pub drawn: [Trace; 3],
-    /// Order of a point's own refinement, and of a shared one, of each of [`Order::ALL`].
-    pub refined: [[Trace; 2]; 3],
+/// Returns stretches of eye samples that are neighbours in space.
+fn stretches(lit: &LitScene, order: Order) -> Vec<Vec<usize>> {
+    let step = match order {
+        Order::Pixels => 1,
+        Order::Records => CacheSettings::default().least_cell.max(1) as usize,
+    };
+    let samples: Vec<usize> = (0..lit.samples.len()).step_by(step).collect();
+    lit.spread(samples.len()).into_iter().map(|stretch| samples[stretch].to_vec()).collect()
 }
 
-impl Traces {
-    pub fn record(setting: &Setting, orders: &Orders) -> Traces {
-        Traces {
-            drawn: [unrelated(setting), cluster(setting), neighbours(setting)],
-            refined: Order::ALL.map(|order| refined(setting, orders, order)),
+/// Records the rays of the cuts at some points.
+fn chunk<'w>(lit: &LitScene<'w>, order: Order, points: &[usize], shared: bool) -> Vec<SegmentPacket> {
+    let recorder = Recorder { lit, packer: RefCell::default() };
+    let (transfer, mut single, mut group) = (lit.transfer(), Lightcut::new(), PacketLightcut::new());
+    let (surface, irradiance) = (|point| lit.surface(point), |point| lit.irradiance(point));
+    let (groups, cut, receiver): (_, _, &dyn Fn(usize) -> Receiver<'w>) = match order {
+        Order::Pixels => (lit.groups(points), CutSettings::default(), &surface),
+        Order::Records => {
+            let cut = CutSettings { origin: Some(Origin::Indirect), ..CacheSettings::default().cut };
+            (lit.groups_of_records(points), cut, &irradiance)
+        }
+    };
+    let mut packet = ReceiverPacket::new();
+    for members in groups {
+        if shared && members.len() >= MIN_SHARED {
+            packet.set(members.iter().map(|&point| receiver(point)));
+            group.gather(&transfer, &recorder, &packet, &cut);
+        } else {
+            for point in members {
+                single.gather(&transfer, &recorder, &receiver(point), &cut);
+            }
         }
     }
-
-    pub fn all(&self) -> impl Iterator<Item = &Trace> {
-        self.drawn.iter().chain(self.refined.iter().flatten())
-    }
-
-    /// Those of lightcuts per pixel.
-    pub fn pixels(&self) -> &[Trace; 2] {
-        &self.refined[0]
-    }
+    let mut packer = recorder.packer.into_inner();
+    packer.flush();
+    packer.packets
 }
 
-/// Rays to lights one after the other, sixteen a packet.
+/// Packets, the last of which takes single rays until it is full.
 #[derive(Default)]
 struct Packer {
     packets: Vec<SegmentPacket>,
@@ -104,110 +139,9 @@ impl Packer {
     }
 }
 
-/// The ray to a light, if its light would be reflected.
-fn lit(setting: &Setting, reflector: &Receiver, leaf: &LightNode) -> Option<Ray> {
-    let vpl = &setting.trees.vpls[leaf.representative()];
-    let response = setting.transfer().unshadowed(reflector, vpl, leaf.kind());
-    let (x, normal) = (reflector.position(), reflector.geometric_normal());
-    (response != Rgb::ZERO).then(|| to_vpl(x, normal, vpl, leaf.kind()))
-}
-
-/// From each eye sample to lights that have nothing in common.
-fn unrelated(setting: &Setting) -> Trace {
-    let (leaves, mut dice) = (setting.leaves(), Dice(1));
-    drawn(setting, "unrelated lights", |reflector, packer| {
-        for _ in 0..32 {
-            let Some(leaf) = leaves.get(dice.below(leaves.len())) else { return };
-            if let Some(ray) = lit(setting, reflector, leaf) {
-                packer.push(&ray, leaf.representative() as u32);
-            }
-        }
-    })
-}
-
-/// From each eye sample to sixteen lights that are neighbours in their tree.
-fn cluster(setting: &Setting) -> Trace {
-    let (leaves, mut dice) = (setting.leaves(), Dice(2));
-    drawn(setting, "a cluster's lights", |reflector, packer| {
-        let first = dice.below(leaves.len().saturating_sub(LANES));
-        for leaf in leaves.iter().skip(first).take(LANES) {
-            if let Some(ray) = lit(setting, reflector, leaf) {
-                packer.push(&ray, leaf.representative() as u32);
-            }
-        }
-        packer.flush();
-    })
-}
-
-/// Times that lights are drawn for each eye sample.
-const DRAWS: usize = 16;
-
-fn drawn(setting: &Setting, name: &'static str, mut draw: impl FnMut(&Receiver, &mut Packer)) -> Trace {
-    let stretches = setting.pixels();
-    let points = stretches.iter().map(Vec::len).sum();
-    let chunk = |stretch: Vec<usize>| {
-        let mut packer = Packer::default();
-        for sample in stretch {
-            let reflector = setting.reflector(sample);
-            (0..DRAWS).for_each(|_| draw(&reflector, &mut packer));
-        }
-        packer.flush();
-        packer.packets
-    };
-    let chunks = stretches.into_iter().map(chunk).collect();
-    Trace { name, neighbours: false, chunks, points }
-}
-
-/// From groups of neighbouring eye samples to one light at a time.
-fn neighbours(setting: &Setting) -> Trace {
-    let (leaves, mut dice) = (setting.leaves(), Dice(3));
-    let mut points = 0;
-    let mut chunk = |stretch: Vec<usize>| {
-        let mut packets = Vec::new();
-        for group in setting.groups(&stretch) {
-            points += group.len();
-            let reflectors: Vec<Receiver> = group.iter().map(|&i| setting.reflector(i)).collect();
-            for _ in 0..256 {
-                let Some(leaf) = leaves.get(dice.below(leaves.len())) else { continue };
-                let key = leaf.representative() as u32;
-                let mut packet =
-                    SegmentPacket { neighbours: true, rays: Rays16::default(), valid: 0, keys: [key; 16] };
-                for (lane, reflector) in reflectors.iter().enumerate() {
-                    if let Some(ray) = lit(setting, reflector, leaf) {
-                        packet.rays.set(lane, &ray);
-                        packet.valid |= 1 << lane;
-                    }
-                }
-                if packet.valid != 0 {
-                    packets.push(packet);
-                }
-            }
-        }
-        packets
-    };
-    let chunks = setting.pixels().into_iter().map(&mut chunk).collect();
-    Trace { name: "neighbours, one light", neighbours: true, chunks, points }
-}
-
-/// Segments that cuts ask for: each point's own cut, and those that groups share.
-fn refined(setting: &Setting, orders: &Orders, order: Order) -> [Trace; 2] {
-    [false, true].map(|shared| {
-        let chunk = |chunk| {
-            let recorder = Recorder { setting, packer: RefCell::default() };
-            orders.light(order, chunk, shared, &recorder);
-            let mut packer = recorder.packer.into_inner();
-            packer.flush();
-            packer.packets
-        };
-        let chunks = (0..orders.chunks()).map(chunk).collect();
-        let name = order.names()[usize::from(shared)];
-        Trace { name, neighbours: shared, chunks, points: orders.points(order) }
-    })
-}
-
 /// Visibility in the scene that records its queries.
 struct Recorder<'a> {
-    setting: &'a Setting<'a>,
+    lit: &'a LitScene<'a>,
     packer: RefCell<Packer>,
 }
 
@@ -215,37 +149,18 @@ impl Visibility for Recorder<'_> {
     fn visible(&self, x: Vec3, normal: Vec3, vpl: &Vpl, node: &LightNode) -> bool {
         let ray = to_vpl(x, normal, vpl, node.kind());
         self.packer.borrow_mut().push(&ray, node.representative() as u32);
-        !self.setting.world.accel.occluded(&ray)
+        !self.lit.world.accel.occluded(&ray)
     }
 }
 
 impl PacketVisibility for Recorder<'_> {
     fn visible16(&self, points: &ReceiverPacket, lanes: u16, vpl: &Vpl, node: &LightNode) -> u16 {
         let rays = points.shadow_rays(vpl, node.kind());
-        let seen = lanes & !self.setting.world.accel.occluded16(&rays, lanes, true);
-        let key = node.representative() as u32;
-        let packet = SegmentPacket { neighbours: true, rays, valid: lanes, keys: [key; 16] };
+        let seen = lanes & !self.lit.world.accel.occluded16(&rays, lanes, true);
+        let keys = [node.representative() as u32; LANES];
         let mut packer = self.packer.borrow_mut();
         packer.flush();
-        packer.packets.push(packet);
+        packer.packets.push(SegmentPacket { neighbours: true, rays, valid: lanes, keys });
         seen
-    }
-}
-
-impl RayVisibility for Recorder<'_> {
-    fn arriving16(&self, rays: &Rays16, count: usize, light: &mut Vec3x16) -> u16 {
-        let packet =
-            SegmentPacket { neighbours: true, rays: rays.clone(), valid: first_lanes(count), keys: [0; 16] };
-        let mut packer = self.packer.borrow_mut();
-        packer.flush();
-        packer.packets.push(packet);
-        self.setting.world.arriving16(rays, count, light)
-    }
-}
-
-impl SegmentPacket {
-    /// Its rays and their lights.
-    pub fn singles(&self) -> impl Iterator<Item = (Ray, u32)> + '_ {
-        lanes_in(self.valid).map(|lane| (self.rays.get(lane), self.keys[lane]))
     }
 }

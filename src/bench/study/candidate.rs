@@ -1,57 +1,128 @@
-//! Methods with settings, to be rendered and judged.
+//! Images that a study renders: methods with settings.
 
-use render::method::{Method, path, reconstruction};
+use super::Study;
+use embree::BuildQuality;
+use render::method::{Method, lightcuts, path, photon_cache, reconstruction};
 use render::plan::{DRAFT, FINAL, Ladder, PREVIEW, REFERENCE, options};
+use serde::Serialize;
 use transport::paths::Estimand;
 
-/// Samples a pixel of denoised paths that make their curve.
-pub const DENOISED_SPP: [u32; 5] = [1, 4, 16, 64, 256];
+/// Samples per pixel of the denoised paths that make a curve.
+const DENOISED_SPP: [u32; 5] = [1, 4, 16, 64, 256];
 
-/// A method with settings, under a label.
+/// An image to be rendered.
 #[derive(Clone)]
 pub struct Candidate {
-    /// Label of the row or point.
+    /// Label of its row or point.
     pub label: String,
     /// Method and settings.
     pub method: Method,
-    /// True if its picture is denoised.
+    /// True if the image is denoised.
     pub denoise: bool,
-    /// Frames of a walk-through that ends at the picture, which is its last; `None` for a picture alone.
+    /// Number of frames of a walk-through whose last frame is the image; `None` for a single image.
     pub walk: Option<usize>,
+    /// Acceleration structure to be built for the image, whose time counts; `None` for the scene's own.
+    pub build: Option<BuildQuality>,
+    /// Number of seeds over which errors are averaged; 0 for the method's own seed.
+    pub seeds: u32,
+    /// Options for the settings that differ from the defaults.
+    pub options: String,
+    /// Group that the image belongs to.
+    pub group: Group,
+    /// False for a mere point on the curve of its group.
+    pub main: bool,
+}
+
+/// Groups of images, by the reason for which these are rendered.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Group {
+    /// The defaults, and methods that are compared by themselves.
+    Default,
+    /// Settings of `--quality`.
+    Quality,
+    /// One setting varied.
+    Sweep,
+    /// A point of a designed sample.
+    Sample,
+    /// Other methods.
+    Other,
+    /// Denoised paths of several sample counts.
+    DenoisedPath,
+    /// Lightcuts with cuts shared between neighbours.
+    Lightcuts,
+    /// Lightcuts with a cut per sample, as in the paper.
+    Unshared,
+    /// Final gathering over a photon map.
+    PhotonCache,
 }
 
 impl Candidate {
-    /// A method under a label, denoised if its pictures are meant to be.
+    /// Creates a candidate that is denoised if its method leaves noise.
     pub fn new(label: impl Into<String>, method: Method) -> Candidate {
-        Candidate { label: label.into(), denoise: method.leaves_noise(), method, walk: None }
+        Candidate {
+            label: label.into(),
+            denoise: method.leaves_noise(),
+            method,
+            walk: None,
+            build: None,
+            seeds: 0,
+            options: String::new(),
+            group: Group::Default,
+            main: true,
+        }
     }
 
-    /// A walk-through of so many frames by a method that keeps records.
-    pub fn walk(label: impl Into<String>, method: Method, frames: usize) -> Candidate {
-        Candidate { walk: Some(frames), ..Candidate::new(label, method) }
-    }
-
-    /// The path tracer of a number of samples a pixel, denoised.
-    pub fn denoised_path(label: impl Into<String>, spp: u32) -> Candidate {
+    /// Creates denoised paths.
+    pub fn denoised_path(spp: u32) -> Candidate {
         let method = Method::Path(path::Settings { spp, ..path::Settings::default() });
-        Candidate { denoise: true, ..Candidate::new(label, method) }
+        let group = Group::DenoisedPath;
+        let label = format!("path --denoise, {spp} spp");
+        Candidate { denoise: true, group, ..Candidate::new(label, method) }
+    }
+
+    /// Returns true for the path tracer.
+    pub fn is_path(&self) -> bool {
+        matches!(self.method, Method::Path(_))
+    }
+
+    /// Returns true if the method estimates whole pixels, false if it keeps eye samples.
+    pub fn whole_pixels(&self) -> bool {
+        self.method.estimand() == Estimand::Pixels
     }
 }
 
-/// Returns the default method at the named levels of the quality scale, with its options.
-pub fn qualities() -> impl Iterator<Item = (Candidate, String)> {
+/// Returns denoised paths of several sample counts; none if the study has no denoiser.
+pub fn denoised_paths(study: &Study) -> impl Iterator<Item = Candidate> {
+    DENOISED_SPP.into_iter().filter(|_| study.denoises()).map(Candidate::denoised_path)
+}
+
+/// Returns the default method at the named levels of the quality scale.
+pub fn qualities() -> impl Iterator<Item = Candidate> {
     let ladder = Ladder::new(Method::default(), &[]);
     let named = [("draft", DRAFT), ("preview", PREVIEW), ("final", FINAL), ("reference", REFERENCE)];
     ladder.into_iter().flat_map(move |ladder| {
-        named.map(|(name, height)| {
-            let method = ladder.at(height);
-            (Candidate::new(name, method), options(&method))
+        named.map(|(name, level)| {
+            let method = ladder.at(level);
+            Candidate { options: options(&method), group: Group::Quality, ..Candidate::new(name, method) }
         })
     })
 }
 
-/// Returns the positions of the samples of methods that keep eye samples: those of reconstruction cuts.
+/// Returns the eye samples of methods that keep these: the samples of reconstruction cuts.
 pub fn eye_samples() -> Estimand {
     let reconstruction::Settings { spp, seed, .. } = reconstruction::Settings::default();
     Estimand::EyeSamples { spp, seed }
+}
+
+/// Returns lightcuts on the eye samples, virtual lights and cuts of reconstruction cuts.
+pub fn lightcuts_on_eye_samples() -> lightcuts::Settings {
+    let reconstruction::Settings { spp, seed, max_depth, light, cut, family, .. } = Default::default();
+    lightcuts::Settings { spp, seed, max_depth, light, cut, family, ..Default::default() }
+}
+
+/// Returns the photon cache on the eye samples of reconstruction cuts.
+pub fn photons_on_eye_samples() -> photon_cache::Settings {
+    let reconstruction::Settings { spp, seed, max_depth, .. } = Default::default();
+    photon_cache::Settings { spp, seed, max_depth, ..Default::default() }
 }

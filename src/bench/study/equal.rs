@@ -1,17 +1,17 @@
-//! Time that a method takes to an error, as far as its curve of measured pictures reaches.
+//! Time that a method takes to an error, within the range of its measured images.
 
 use serde::Serialize;
 use std::fmt;
 
-/// A time, or a ratio of two, as far as it is known.
+/// A time or a ratio of times, or a bound of it.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(tag = "is", content = "value", rename_all = "snake_case")]
 pub enum Bounded {
-    /// Interpolated between two pictures.
+    /// Value interpolated between two images.
     About(f64),
-    /// Lower bound: no picture is as good; that of the best.
+    /// Lower bound, the best image's: no image is as good.
     AtLeast(f64),
-    /// Upper bound: all pictures are better; that of the fastest.
+    /// Upper bound, the fastest image's: all images are better.
     AtMost(f64),
 }
 
@@ -25,13 +25,8 @@ impl fmt::Display for Bounded {
     }
 }
 
-/// Formats a value; a dash for `None`.
-pub fn bounded(value: Option<Bounded>) -> String {
-    value.map_or_else(|| "-".to_owned(), |value| value.to_string())
-}
-
 impl Bounded {
-    /// Returns the ratio of two; `None` if their bounds do not bound it.
+    /// Returns the ratio to `other`; `None` if the bounds do not bound it.
     pub fn over(self, other: Bounded) -> Option<Bounded> {
         use Bounded::{About, AtLeast, AtMost};
         match (self, other) {
@@ -43,15 +38,15 @@ impl Bounded {
     }
 }
 
-/// Returns the time to `error` by the times and errors of a method's pictures, all positive. Pictures that are beaten
-/// in both by another are ignored; times are interpolated in logarithms.
-pub fn time_to(error: f64, pictures: &[(f64, f64)]) -> Option<Bounded> {
-    let mut sorted: Vec<(f64, f64)> = pictures.iter().copied().filter(|p| p.0 > 0.0 && p.1 > 0.0).collect();
+/// Returns the time to `error`, from the times and errors of a method's images, all positive. Images that another image
+/// beats in both are ignored. Times are interpolated in logarithms.
+pub fn time_to(error: f64, images: &[(f64, f64)]) -> Option<Bounded> {
+    let mut sorted: Vec<(f64, f64)> = images.iter().copied().filter(|p| p.0 > 0.0 && p.1 > 0.0).collect();
     sorted.sort_by(|a, b| a.0.total_cmp(&b.0));
     let mut front: Vec<(f64, f64)> = Vec::new();
-    for picture in sorted {
-        if front.last().is_none_or(|best| picture.1 < best.1) {
-            front.push(picture);
+    for image in sorted {
+        if front.last().is_none_or(|best| image.1 < best.1) {
+            front.push(image);
         }
     }
     let (fastest, best) = (*front.first()?, *front.last()?);
@@ -79,8 +74,8 @@ mod tests {
     #[test]
     fn times_are_interpolated_within_the_front_and_bounds_beyond_it() {
         // Error halves as time doubles; the third is beaten by the second.
-        let pictures = [(1.0, 0.4), (4.0, 0.1), (5.0, 0.2)];
-        let at = |error| time_to(error, &pictures);
+        let images = [(1.0, 0.4), (4.0, 0.1), (5.0, 0.2)];
+        let at = |error| time_to(error, &images);
         let Some(About(x)) = at(0.2) else { panic!() };
         assert!((x - 2.0).abs() < 1e-12, "{x}");
         assert_eq!([at(0.05), at(0.8)], [Some(AtLeast(4.0)), Some(AtMost(1.0))]);

@@ -1,6 +1,7 @@
-//! Errors of a picture against another picture, or against the truth that a reference estimates.
+//! Errors of an image against another image, or against the truth that a reference estimates.
 
-use super::{Reference, StudyError};
+use super::StudyError;
+use super::reference::{Reference, mean};
 use base::film::Image;
 use base::film::metrics::{Variances, compare};
 use glam::DVec3;
@@ -12,28 +13,32 @@ const WORST: f64 = 0.001;
 /// Error measures.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Errors {
-    /// PSNR of the displayed pictures, dB; `None` if they are identical. Against a reference, its noise is
-    /// subtracted; `None` if nothing remains.
+    /// PSNR of the displayed images, dB; `None` for identical images. Against a reference, its noise is subtracted;
+    /// `None` if nothing remains.
     pub psnr: Option<f64>,
-    /// Relative mean square error without the worst pixel of a thousand: where paths rarely find a lamp, a
-    /// few pixels of the reference are wrong by more than all others together. Against a reference, its noise
-    /// is subtracted, so that the value may be slightly negative.
+    /// Relative mean square error without the worst pixel of a thousand. Where paths rarely find an emitter, a few
+    /// wrong pixels of the reference outweigh all others. Against a reference, its noise is subtracted, so that the
+    /// value may be slightly negative.
     pub rel_mse: f64,
-    /// Mean FLIP of the displayed pictures.
+    /// Mean FLIP of the displayed images.
     pub flip: f64,
-    /// Mean radiance over that of the other picture: shows the energy lost by clamping.
+    /// Mean radiance over that of the other image. Shows the energy lost by clamping.
     pub brightness: f64,
 }
 
 impl Errors {
-    /// Returns the errors against another picture.
+    /// Placeholder of images without a reference.
+    pub const UNKNOWN: Errors =
+        Errors { psnr: None, rel_mse: f64::NAN, flip: f64::NAN, brightness: f64::NAN };
+
+    /// Returns the errors against another image.
     pub fn between(test: &Image, other: &Image) -> Result<Errors, StudyError> {
         let found = compare(test, other, Variances::default()).map_err(StudyError::Compare)?;
         let brightness = mean(test) / mean(other).max(f64::MIN_POSITIVE);
         Ok(Errors { psnr: found.psnr, rel_mse: found.rel_mse_trimmed, flip: found.flip, brightness })
     }
 
-    /// Returns the errors against the truth that a reference estimates. FLIP is against the reference as it is.
+    /// Returns the errors against the truth that a reference estimates. FLIP includes the reference's noise.
     pub fn against(test: &Image, reference: &Reference) -> Result<Errors, StudyError> {
         let errors = Errors::between(test, &reference.mean)?;
         let floor = 0.01 * mean(&reference.mean).powi(2);
@@ -53,32 +58,41 @@ impl Errors {
         Ok(Errors { psnr, rel_mse: sum / counted.max(1) as f64, ..errors })
     }
 
-    /// Returns the root mean square error of the displayed pictures; 0 where there is no PSNR.
+    /// Returns the means of the measures that have one: PSNR has none.
+    pub fn mean(all: &[Errors]) -> Errors {
+        if let [errors] = all {
+            return *errors;
+        }
+        let mean = |of: fn(&Errors) -> f64| all.iter().map(|e| of(e) / all.len() as f64).sum();
+        Errors {
+            psnr: None,
+            rel_mse: mean(|e| e.rel_mse),
+            flip: mean(|e| e.flip),
+            brightness: mean(|e| e.brightness),
+        }
+    }
+
+    /// Returns the root mean square error of the displayed image; 0 without a PSNR.
     pub fn displayed_rmse(&self) -> f64 {
         self.psnr.map_or(0.0, rmse_of_psnr)
     }
 
-    /// Returns the root of the relative mean square error; 0 where that is negative.
+    /// Returns the root of the relative mean square error; 0 if that is negative.
     pub fn rel_rmse(&self) -> f64 {
         self.rel_mse.max(0.0).sqrt()
     }
 }
 
-/// Returns the root mean square error that a PSNR stands for, relative to the peak.
+/// Returns the root mean square error for a PSNR, relative to the peak.
 pub fn rmse_of_psnr(psnr: f64) -> f64 {
     10f64.powf(-0.05 * psnr)
 }
 
-/// Returns the PSNR against the truth by that against a reference, whose own noise has a PSNR too.
+/// Returns the PSNR against the truth, from the PSNR against a reference and the reference's own.
 fn without_noise(psnr: Option<f64>, noise: Option<f64>) -> Option<f64> {
     let square = |psnr: Option<f64>| psnr.map_or(0.0, |psnr| rmse_of_psnr(psnr).powi(2));
     let mse = square(psnr) - square(noise);
     (mse > 0.0).then(|| -10.0 * mse.log10())
-}
-
-fn mean(image: &Image) -> f64 {
-    let sum: f64 = image.pixels.iter().map(|p| p.as_dvec3().element_sum() / 3.0).sum();
-    sum / image.pixels.len().max(1) as f64
 }
 
 #[cfg(test)]
@@ -90,7 +104,7 @@ mod tests {
     use base::sampling::hash;
 
     #[test]
-    fn noise_of_the_reference_and_lamps_that_its_paths_missed_do_not_count() {
+    fn noise_of_the_reference_and_emitters_that_its_paths_missed_do_not_count() {
         let noisy = |seed: u32| {
             let mut image = Image::new(128, 128);
             for (i, p) in image.pixels.iter_mut().enumerate() {

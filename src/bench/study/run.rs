@@ -1,155 +1,113 @@
-//! A picture by some method and settings, rendered or loaded from the store.
+//! An image rendered by a method, or loaded from the store.
 
-use super::reference::{Reference, reference};
-use super::store::{Kept, program};
-use super::{Candidate, Study, StudyError, Subject};
+use super::store::{Stored, program};
+use super::{Candidate, Counted, Study, StudyError, Subject};
 use base::film::Image;
-use base::stats::{Stage, StageTime, Stats, Stopwatch};
+use base::stats::{Stage, Stats, Stopwatch};
 use embree::BuildQuality;
 use render::method::LightStore;
 use render::session::{Finish, Goal};
 use render::walk::{RetentionLimits, Walk};
-use serde_json::{Value, json};
-use transport::paths::Estimand;
+use serde_json::json;
 use world::view::View;
 
-/// A rendered picture with its statistics.
-#[derive(Clone)]
+/// A rendered image with its statistics.
 pub struct Run {
-    /// The picture.
+    /// The image.
     pub color: Image,
-    /// Counters and stage times.
-    stats: Value,
-}
-
-/// Name and key under which a picture is stored; the key holds all that the picture depends on.
-struct Place {
-    file: String,
-    key: Value,
+    /// Counters and times of stages.
+    pub counted: Counted,
 }
 
 impl Study<'_> {
-    /// Returns the subject's reference, rendered as far as the settings ask.
-    pub fn reference(&self, subject: &Subject, estimand: Estimand) -> Result<Reference, StudyError> {
-        reference(self, subject, estimand)
-    }
-
-    /// Renders a picture, or loads it if this program has already rendered it.
-    pub fn run(&self, subject: &Subject, candidate: &Candidate) -> Result<Run, StudyError> {
-        let place = self.place(subject, candidate, None);
-        match self.kept(&place) {
-            Some(run) => Ok(run),
-            None => {
-                let views = candidate.walk.and_then(|frames| subject.walk(frames));
-                let rendered = match views {
-                    Some(views) => self.walk(subject, candidate, &views),
-                    None => self.render(subject, candidate),
-                };
-                self.keep(&place, rendered?)
-            }
-        }
-    }
-
-    /// The same over an acceleration structure built for this run; the time includes the build.
-    pub fn run_over(
-        &self,
-        quality: BuildQuality,
-        subject: &mut Subject,
-        candidate: &Candidate,
-    ) -> Result<Run, StudyError> {
-        let place = self.place(subject, candidate, Some(quality));
-        if let Some(run) = self.kept(&place) {
-            return Ok(run);
-        }
-        let watch = Stopwatch::start();
-        subject.rebuild(quality)?;
-        let built = watch.elapsed();
-        let run = self.render(subject, candidate);
-        subject.rebuild(BuildQuality::default())?;
-        let mut run = run?;
-        run.stats["times"][Stage::Build.key()] = json!(built);
-        self.keep(&place, run)
-    }
-
-    /// Returns name and key; a picture whose time includes a build has a key of its own.
-    fn place(&self, subject: &Subject, candidate: &Candidate, built: Option<BuildQuality>) -> Place {
+    /// Renders an image, or loads it if this program has rendered it before. Of several runs the fastest counts.
+    pub fn run(&self, subject: &mut Subject, candidate: &Candidate) -> Result<Run, StudyError> {
         let method = &candidate.method;
+        let name = format!("{}, {}", subject.name, method.name());
+        // The label is not part of the key.
         let key = json!({
             "scene": format!("{:016x}", subject.hash),
             "film": subject.view.window.film,
             "program": program(),
             "threads": self.plan.threads,
-            "build": built.map(|quality| format!("{quality:?}")),
+            "build": candidate.build.map(|quality| format!("{quality:?}")),
             "repeats": self.plan.repeats,
             "method": method.name(),
             "denoise": candidate.denoise && self.denoises(),
             "walk": candidate.walk,
-            // All settings, including those that the command line lacks.
+            // The debug text holds all settings, also those without an option.
             "settings": format!("{method:?}"),
         });
-        // The label is not part of the key.
-        Place { file: format!("{}, {}", subject.name, method.name()), key }
-    }
-
-    fn kept(&self, place: &Place) -> Option<Run> {
-        let kept = self.store.load(&place.file, &place.key, &[])?;
-        Some(Run { color: kept.color, stats: kept.facts })
-    }
-
-    fn keep(&self, place: &Place, run: Run) -> Result<Run, StudyError> {
-        let kept = Kept { color: run.color.clone(), layers: Vec::new(), facts: run.stats.clone() };
-        self.store.save(&place.file, &place.key, &kept)?;
+        if let Some(Stored { color, facts, .. }) = self.store.load(&name, &key, &[])
+            && let Ok(counted) = serde_json::from_value(facts)
+        {
+            return Ok(Run { color, counted });
+        }
+        let views = candidate.walk.and_then(|frames| subject.walk(frames));
+        let run = match views {
+            Some(views) => self.walk(subject, candidate, &views)?,
+            None => self.render_over(subject, candidate)?,
+        };
+        let unit = if candidate.walk.is_some() { ", per frame" } else { "" };
+        let seconds = run.counted.seconds(&Stage::ALL);
+        (self.say)(&format!("{}, {}{unit}: {seconds:.2} s", subject.name, candidate.label));
+        let facts = json!(run.counted);
+        self.store.save(&name, &key, &Stored { color: run.color.clone(), layers: Vec::new(), facts })?;
         Ok(run)
     }
 
-    /// Renders a walk-through over `views`, once; returns its last picture with the means over all frames of times and
-    /// of records computed.
+    /// Renders an image with a seed of its own, once and without storing it.
+    pub fn run_seed(&self, subject: &Subject, candidate: &Candidate, seed: u32) -> Result<Run, StudyError> {
+        let mut candidate = candidate.clone();
+        candidate.method.set_seed(seed);
+        self.render(subject, &candidate, 1)
+    }
+
+    /// Renders over the candidate's acceleration structure. The time includes a build for the candidate.
+    fn render_over(&self, subject: &mut Subject, candidate: &Candidate) -> Result<Run, StudyError> {
+        let Some(quality) = candidate.build else {
+            return self.render(subject, candidate, self.plan.repeats);
+        };
+        let watch = Stopwatch::start();
+        subject.rebuild(quality)?;
+        let built = watch.elapsed();
+        let run = self.render(subject, candidate, self.plan.repeats);
+        subject.rebuild(BuildQuality::default())?;
+        let mut run = run?;
+        run.counted.set(Stage::Build, built);
+        Ok(run)
+    }
+
+    /// Renders a walk-through over `views` once. Returns its last image with mean times and numbers of new records.
     fn walk(&self, subject: &Subject, candidate: &Candidate, views: &[View]) -> Result<Run, StudyError> {
         let denoise = Some(candidate.denoise && self.denoises());
         let goal = Goal { method: candidate.method, denoise, ..Goal::default() };
         let mut walk = Walk::new(&subject.session, goal, RetentionLimits::default());
-        let mut times = [0.0; Stage::ALL.len()].map(|_: f64| StageTime::default());
-        let mut records = 0.0;
+        let mut frames = Vec::new();
         let mut last = None;
         for view in views {
-            // The only other errors are of settings, which studies choose, and of memory.
+            // Other errors are of settings, which studies choose, and of memory.
             let frame = walk.frame(view, self.control).ok().filter(|frame| frame.complete);
-            let Some(frame) = frame else { return Err(StudyError::Interrupted) };
-            for (time, stage) in times.iter_mut().zip(Stage::ALL) {
-                *time += frame.stats.stage(stage).unwrap_or_default();
-            }
-            let run = Run { color: frame.film.color, stats: frame.stats.to_json() };
-            records += run.counter("Walk", "new records").unwrap_or_default();
-            last = Some(run);
+            let frame = frame.ok_or(StudyError::Interrupted)?;
+            frames.push(Counted::new(&frame.stats, 0));
+            last = Some(frame.film.color);
         }
-        let Some(mut run) = last else { return Err(StudyError::Interrupted) };
-        let frames = views.len() as f64;
-        run.stats["times"] = Value::Object(Default::default());
-        for (time, stage) in times.iter().zip(Stage::ALL).filter(|(time, _)| time.wall_seconds > 0.0) {
-            let StageTime { wall_seconds, cpu_seconds } = *time;
-            let mean = StageTime { wall_seconds: wall_seconds / frames, cpu_seconds: cpu_seconds / frames };
-            run.stats["times"][stage.key()] = json!(mean);
-        }
-        for (layer, count) in [("direct", 0.0), ("indirect", records / frames)] {
-            run.stats["counters"]["Cache"][format!("records, {layer}")] = json!(count);
-        }
-        let seconds = run.seconds(&Stage::ALL);
-        (self.say)(&format!("{}, {}, a frame: {seconds:.2} s", subject.name, candidate.label));
-        Ok(run)
+        let mut counted = frames.last().cloned().unwrap_or_default();
+        counted.average(&frames);
+        Ok(Run { color: last.ok_or(StudyError::Interrupted)?, counted })
     }
 
-    /// Renders `repeats` times and returns the run that took the least processor time.
-    fn render(&self, subject: &Subject, candidate: &Candidate) -> Result<Run, StudyError> {
+    /// Renders several times and returns the run that took the least processor time.
+    fn render(&self, subject: &Subject, candidate: &Candidate, repeats: usize) -> Result<Run, StudyError> {
+        let Subject { session, view, .. } = subject;
         let mut best: Option<Run> = None;
-        for _ in 0..self.plan.repeats.max(1) {
-            let Subject { session, view, .. } = subject;
+        for _ in 0..repeats.max(1) {
             let goal = Goal { denoise: Some(candidate.denoise && self.denoises()), ..Goal::default() };
-            let mut loading = Stats::new();
-            let finish = Finish::new(&session.world, view, &goal, self.control, &mut loading);
+            let mut stats = Stats::new();
+            let finish = Finish::new(&session.world, view, &goal, self.control, &mut stats);
             let method = finish.guided(candidate.method);
             let output = method.render(&session.world, &LightStore::default(), view, self.control);
             let mut output = finish.apply(&method, output);
-            output.stats.merge(&loading);
             let failure = output.denoised.as_ref().and_then(|denoised| denoised.as_ref().err());
             if let Some(error) = finish.load_error().or(failure) {
                 return Err(StudyError::Denoise(error.clone()));
@@ -157,43 +115,15 @@ impl Study<'_> {
             if !output.complete {
                 return Err(StudyError::Interrupted);
             }
-            let mut run = Run { color: output.color, stats: output.stats.to_json() };
-            run.color.remove_nonfinite();
-            if best.as_ref().is_none_or(|best| run.seconds(&Stage::ALL) < best.seconds(&Stage::ALL)) {
+            stats.merge(&output.stats);
+            let nonfinite = output.nonfinite + output.color.remove_nonfinite();
+            let run = Run { color: output.color, counted: Counted::new(&stats, nonfinite) };
+            let seconds = |run: &Run| run.counted.seconds(&Stage::ALL);
+            if best.as_ref().is_none_or(|best| seconds(&run) < seconds(best)) {
                 best = Some(run);
             }
         }
-        // `None` only if the first run was interrupted.
-        let Some(run) = best else { return Err(StudyError::Interrupted) };
-        (self.say)(&format!("{}, {}: {:.2} s", subject.name, candidate.label, run.seconds(&Stage::ALL)));
-        Ok(run)
-    }
-}
-
-impl Run {
-    /// Returns the sum of some stages' processor seconds.
-    pub fn seconds(&self, stages: &[Stage]) -> f64 {
-        self.sum(stages, "cpu_seconds")
-    }
-
-    /// Returns the sum of all stages' elapsed seconds.
-    pub fn elapsed(&self) -> f64 {
-        self.sum(&Stage::ALL, "wall_seconds")
-    }
-
-    fn sum(&self, stages: &[Stage], clock: &str) -> f64 {
-        let times = stages.iter().filter_map(|stage| self.stats["times"][stage.key()][clock].as_f64());
-        // The sum of none would be -0.
-        times.fold(0.0, |sum, time| sum + time)
-    }
-
-    /// True if the picture was denoised.
-    pub fn denoised(&self) -> bool {
-        self.stats["times"][Stage::Denoise.key()].is_object()
-    }
-
-    /// Returns a counter, if it was counted.
-    pub fn counter(&self, group: &str, name: &str) -> Option<f64> {
-        self.stats["counters"][group][name].as_f64()
+        // The first run is `None` only if it was interrupted.
+        best.ok_or(StudyError::Interrupted)
     }
 }

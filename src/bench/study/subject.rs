@@ -1,4 +1,4 @@
-//! A scene under study.
+//! Scenes under study.
 
 use super::store::hash_debug;
 use super::{Study, StudyError};
@@ -10,55 +10,67 @@ use world::view::View;
 
 /// A scene, ready to be rendered.
 pub struct Subject {
-    /// Its name.
+    /// Name.
     pub name: String,
-    /// Hash of all its content once loaded, generated geometry included.
+    /// Hash of all its content once loaded, including generated geometry.
     pub hash: u64,
     /// Number of triangles.
     pub triangles: usize,
+    /// Value of the quantity that differs between the scenes of a question; 0 without such a quantity.
+    pub value: f64,
+    /// Processor seconds of loading the scene and building its acceleration structure, if measured.
+    pub load: Option<f64>,
     /// The scene, prepared for rendering.
     pub session: Session,
     /// View of the whole film by its still camera.
     pub view: View,
 }
 
+impl Study<'_> {
+    /// Loads a scene and prepares it.
+    pub fn subject(&self, path: &Path) -> Result<Subject, StudyError> {
+        let Opened { mut session, warnings, .. } = Session::open(path, &LoadOptions::default())?;
+        let warnings = warnings.iter().filter(|w| w.severity == Severity::Warning).count();
+        if warnings > 0 {
+            let path = path.display();
+            (self.say)(&format!("{path}: {warnings} things are not modelled; `info` lists them"));
+        }
+        let scene = &mut session.world.scene;
+        // The hash does not depend on the paths of the files.
+        let sources = std::mem::take(&mut scene.sources);
+        let hash = hash_debug(&(&*scene, &session.cameras));
+        scene.sources = sources;
+        let (name, triangles) = (scene.name.clone(), scene.triangle_count());
+        let view = View::whole(session.cameras.still, self.plan.resolution);
+        Ok(Subject { name, hash, triangles, value: 0.0, load: None, session, view })
+    }
+
+    /// Writes a scene of the study's own into its folder, and loads it.
+    pub fn own_subject(&self, name: &str, text: &str) -> Result<Subject, StudyError> {
+        let path = self.plan.folder.join(format!("{name}.toml"));
+        std::fs::write(&path, text).map_err(|source| StudyError::File { path: path.clone(), source })?;
+        self.subject(&path)
+    }
+}
+
 impl Subject {
-    /// Views of a walk-through that ends at the view of the picture: the frames of the camera path that come after it,
-    /// the last one first. `None` if the path does not hold so many, or not the picture's camera.
+    /// Builds the acceleration structure again.
+    pub fn rebuild(&mut self, quality: BuildQuality) -> Result<(), StudyError> {
+        let rebuilt = self.session.world.rebuild(quality);
+        rebuilt.map_err(|source| OpenError::Build { path: PathBuf::from(&self.name), source }.into())
+    }
+
+    /// Returns the views of a walk-through that ends at the view of the image: the frames of the camera path after the
+    /// image, in reverse. `None` if the path has too few frames or lacks the image's camera.
     pub fn walk(&self, frames: usize) -> Option<Vec<View>> {
         let path = &self.session.cameras.path;
         let first = path.iter().position(|camera| *camera == self.view.camera)?;
         let cameras = path.get(first..first + frames)?.iter().rev();
         Some(cameras.map(|camera| View { camera: *camera, ..self.view }).collect())
     }
-
-    /// Builds its acceleration structure anew.
-    pub(super) fn rebuild(&mut self, quality: BuildQuality) -> Result<(), StudyError> {
-        let rebuilt = self.session.world.rebuild(quality);
-        rebuilt.map_err(|source| OpenError::Build { path: PathBuf::from(&self.name), source }.into())
-    }
-
-    /// Loads a scene and prepares it.
-    pub(super) fn load(path: &Path, study: &Study) -> Result<Subject, StudyError> {
-        let Opened { mut session, warnings, .. } = Session::open(path, &LoadOptions::default())?;
-        let warnings = warnings.iter().filter(|w| w.severity == Severity::Warning).count();
-        if warnings > 0 {
-            (study.say)(&format!(
-                "{}: {warnings} things are not modelled; `info` lists them",
-                path.display()
-            ));
-        }
-        // The hash does not depend on the paths of its files.
-        let sources = std::mem::take(&mut session.world.scene.sources);
-        let hash = hash_debug(&(&session.world.scene, &session.cameras));
-        session.world.scene.sources = sources;
-        let triangles = session.world.scene.triangle_count();
-        let view = View::whole(session.cameras.still, study.plan.resolution);
-        Ok(Subject { name: session.world.scene.name.clone(), hash, triangles, session, view })
-    }
 }
 
-/// Returns the file of a scene given by its path, or by the name of one in `folder`.
+/// Returns the file of a scene, which is a path or the name of a scene in `folder`.
 pub fn file_of(scene: &Path, folder: &Path) -> PathBuf {
     let named = scene.extension().is_none() && scene.components().count() == 1;
     if named { folder.join(scene).with_extension("toml") } else { scene.to_owned() }

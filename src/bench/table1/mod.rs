@@ -7,146 +7,247 @@
 //! | N_c, direct | records, and the share of them that hold direct light |
 //! | anisotropy | long over short radius of footprints, mean over records: direct / indirect |
 //! | a | radius of footprints over the distance of the geometry that casts light and shadow, mean: direct / indirect |
-//! | cut | clusters in a record's cut, mean; of eye samples' where there are no records |
+//! | cut | clusters in a record's cut, mean; in eye samples' cuts without records |
 //! | T_light | light pass and trees |
 //! | T_f | records, and eye samples' own cuts |
 //! | T_cache | splatting and adaptation |
-//! | total | all of that, the eye pass and denoising |
+//! | total | all stages, including the eye pass and denoising |
 //!
-//! The row of a walk-through, LWalk2, states means over 24 frames that end at the picture, whose errors are its: of
-//! the records that a frame adds to those before it, and of times; the light pass is the first frame's alone.
+//! The row of a walk-through, LWalk2, states means over 24 frames that end at the image: of the records that a frame
+//! adds and of times. The light pass is that of the first frame. Its errors are those of the last frame.
 //!
-//! Deviations: the paper's ΣT leaves out T_light, our total does not. All errors are against a path-traced
-//! reference of the same scene: of its pixels, and of light. Errors of light are, for methods that keep a few
-//! eye samples a pixel, against a reference of those points alone, without their aliasing; for methods that
-//! estimate the whole pixel, the default and paths, they are those of its pixels. Methods that keep eye samples
-//! are compared with lightcuts per pixel on the same samples and virtual lights too, where clamping does not
-//! show either.
+//! Deviations: the paper's ΣT leaves out T_light; our total does not. All errors are measured against path-traced
+//! references of the same scene. The error of light of methods that keep a few eye samples per pixel is measured
+//! against a reference of these points, without their aliasing. These methods are also compared with lightcuts per
+//! pixel on the same eye samples and virtual lights, which leaves out clamping as well.
 
-mod document;
 mod entries;
+mod images;
 mod paper;
-mod row;
 
+use super::document::Grid;
 use super::study::{
-    Bounded, Errors, Noise, Reference, Results, Run, Study, StudyError, eye_samples, time_to,
+    Answer, Bounded, Candidate, Cell, Column, Curve, Figure, Group, Question, Results, Shot, Study,
+    StudyError, Truth, bounded, optional, time_to,
 };
-use super::{Benchmark, Kind};
-use base::film::Image;
-use entries::{Entry, Family, OPPONENTS, entries};
-use row::{Row, Versus};
+use super::{Benchmark, Kind, Scenes};
+use base::stats::Stage;
+use entries::{OPPONENTS, entries, lightcuts};
+use paper::{CLAIMS, LEGEND, SAVED_BY_ANISOTROPY};
 use serde::Serialize;
+use serde_json::json;
 use std::path::PathBuf;
-use transport::paths::Estimand;
 
 pub(super) const BENCHMARK: Benchmark = Benchmark {
     name: "table1",
     about: "The paper's Table 1: every method on whole scenes, times and errors",
-    kind: Kind::Study { scenes: &["knot", "nave", "kitchen", "hall", "apartment"], pixels: [512, 512], run },
+    kind: Kind::Study {
+        scenes: Scenes::Files(&["knot", "nave", "kitchen", "hall", "apartment"]),
+        pixels: [512, 512],
+        run,
+    },
 };
 
-/// All results.
+/// Methods of a scene over processor seconds.
+const QUESTION: Question = Question {
+    error: Truth::PixelsAndEyeSamples,
+    compared_with: |c: &Candidate| (!c.whole_pixels() && c.label != "lightcuts").then_some(0),
+    keeps_images: true,
+    names: 2,
+    table: &[
+        Column::new("label", "method", |_, s| Cell::text(&s.candidate.label)),
+        Column::new("paper", "paper's", |_, s| {
+            let paper = entries::paper(&s.candidate.label);
+            Cell { exact: json!(paper), text: paper.unwrap_or("").to_owned() }
+        }),
+        Column::new("main", "", |_, s| Cell::exact(s.candidate.main)),
+        Column::new("settings", "", |_, s| Cell::exact(s.candidate.method.settings())),
+        Column::new("denoised", "", |_, s| Cell::exact(s.counted.denoised())),
+        Column::new("records", "N_c", |_, s| {
+            let records = s.counted.records;
+            Cell { exact: json!(records), text: whole(records.map(|[d, i]| d + i)) }
+        }),
+        Column::new("", "direct %", |_, s| {
+            Cell::text(whole(s.counted.records.map(|[d, i]| 100.0 * d / (d + i).max(1.0))))
+        }),
+        Column::new("anisotropy", "anisotropy", |_, s| pair(s.counted.anisotropy)),
+        Column::new("accuracy", "a", |_, s| pair(s.counted.accuracy)),
+        Column::new("cut", "cut", |_, s| Cell::optional(s.counted.cut)),
+        Column::new("eye", "", |_, s| time(s, &[Stage::EyePass])),
+        Column::new("light_pass", "T_light", |_, s| time(s, &[Stage::LightPass, Stage::Tree])),
+        Column::new("f", "T_f", |_, s| time(s, &[Stage::Records, Stage::Render])),
+        Column::new("cache", "T_cache", |_, s| match s.counted.records {
+            Some(_) => time(s, &[Stage::Splat]),
+            None => Cell::optional(None),
+        }),
+        Column::new("total", "total", |_, s| Cell::seconds(s.seconds())),
+        Column::new("elapsed", "elapsed", |_, s| Cell::seconds(s.counted.elapsed())),
+        Column::new("against_reference", "", |_, s| Cell::exact(s.errors)),
+        Column::new("", "PSNR", |_, s| Cell::optional(s.errors.psnr)),
+        Column::new("", "relMSE", |_, s| Cell::figure(s.errors.rel_mse)),
+        Column::new("", "FLIP", |_, s| Cell::figure(s.errors.flip)),
+        Column::new("", "brightness", |_, s| Cell::figure(s.errors.brightness)),
+        Column::new("light", "", |_, s| Cell::exact(s.light)),
+        Column::new("", "light relMSE", |_, s| Cell::optional(s.light.map(|e| e.rel_mse))),
+        Column::new("", "light FLIP", |_, s| Cell::optional(s.light.map(|e| e.flip))),
+        Column::new("against_lightcuts", "", |_, s| Cell::exact(s.compared)),
+        Column::new("", "PSNR to LC", |_, s| Cell::optional(s.compared.and_then(|e| e.psnr))),
+        Column::new("", "relMSE to LC", |_, s| Cell::optional(s.compared.map(|e| e.rel_mse))),
+        Column::new("", "FLIP to LC", |_, s| Cell::optional(s.compared.map(|e| e.flip))),
+        Column::new("versus", "", |a, s| Cell::exact([0, 1, 2].map(|o| versus(a, s, o)))),
+        Column::new("", "speed to LC", |a, s| speed(a, s, 0)),
+        Column::new("", "at equal FLIP", |a, s| at_equal(a, s, 0, |v| v.at_equal_flip)),
+        Column::new("", "at equal PSNR", |a, s| at_equal(a, s, 0, |v| v.at_equal_psnr)),
+        Column::new("", "at equal light", |a, s| at_equal(a, s, 0, |v| v.at_equal_light)),
+        Column::new("", "speed to PM", |a, s| speed(a, s, 1)),
+        Column::new("", "at equal FLIP", |a, s| at_equal(a, s, 1, |v| v.at_equal_flip)),
+        Column::new("", "at equal PSNR", |a, s| at_equal(a, s, 1, |v| v.at_equal_psnr)),
+        Column::new("", "at equal light", |a, s| at_equal(a, s, 1, |v| v.at_equal_light)),
+        Column::new("", "speed to path", |a, s| speed(a, s, 2)),
+        Column::new("", "at equal FLIP", |a, s| at_equal(a, s, 2, |v| v.at_equal_flip)),
+        Column::new("", "at equal PSNR", |a, s| at_equal(a, s, 2, |v| v.at_equal_psnr)),
+        Column::new("", "at equal light", |a, s| at_equal(a, s, 2, |v| v.at_equal_light)),
+    ],
+    figures: &[
+        Figure { name: "FLIP against the reference", error: |s| Some(s.errors.flip), curves: CURVES },
+        Figure {
+            name: "relMSE of light, without noise",
+            error: |s| s.light.map(|e| e.rel_mse),
+            curves: CURVES,
+        },
+    ],
+    ..Question::PLAIN
+};
+
+/// Other methods as curves, ours and the paper's as single points.
+const CURVES: &[Curve] = &[
+    Curve { name: "lightcuts", colour: "#a40", joined: true, holds: |c| c.group == Group::Lightcuts },
+    Curve { name: "photon-cache", colour: "#693", joined: true, holds: |c| c.group == Group::PhotonCache },
+    Curve { name: "path --denoise", colour: "#939", joined: true, holds: |c| c.group == Group::DenoisedPath },
+    Curve { name: "", colour: "#4a7fb5", joined: false, holds: |c| c.group == Group::Default },
+    Curve { name: "", colour: "#a40", joined: false, holds: |c| c.group == Group::Unshared },
+];
+
+fn time(shot: &Shot, stages: &[Stage]) -> Cell {
+    Cell::seconds(shot.counted.seconds(stages))
+}
+
+/// Formats an integer; a dash for `None`.
+fn whole(value: Option<f64>) -> String {
+    value.map_or("-".to_owned(), |n| format!("{n:.0}"))
+}
+
+/// Returns figures of direct and indirect light.
+fn pair(figures: [Option<f64>; 2]) -> Cell {
+    let text = match figures {
+        [None, None] => "-".to_owned(),
+        [direct, indirect] => format!("{} / {}", optional(direct), optional(indirect)),
+    };
+    Cell { exact: json!(figures), text }
+}
+
+/// Ratio of another method's time to the time of a row.
 #[derive(Serialize)]
-struct Table1 {
-    /// Conditions that the figures depend on.
-    facts: Vec<(String, String)>,
-    /// Results scene by scene.
-    scenes: Vec<SceneTable>,
+struct Versus {
+    /// Label of the other's row.
+    method: &'static str,
+    /// Ratio at their own settings.
+    speed: f64,
+    /// Ratio at equal FLIP against the reference.
+    at_equal_flip: Option<Bounded>,
+    /// Ratio at equal PSNR against the reference.
+    at_equal_psnr: Option<Bounded>,
+    /// Ratio at equal relMSE of light.
+    at_equal_light: Option<Bounded>,
 }
 
-/// A scene's part of the table.
-#[derive(Serialize)]
-struct SceneTable {
-    /// The scene's name.
-    scene: String,
-    triangles: usize,
-    /// Noise of its reference of pixels.
-    reference: Noise,
-    /// Noise of its reference of eye samples.
-    light_reference: Noise,
-    /// The methods compared, then the points on their curves.
-    rows: Vec<Row>,
-    #[serde(skip)]
-    pictures: Pictures,
-}
-
-/// Pictures of a scene for the page.
-struct Pictures {
-    reference: Image,
-    exposure: f32,
-    /// Pictures of all rows.
-    rows: Vec<Image>,
-}
-
-fn run(study: &Study, scenes: &[PathBuf]) -> Result<Results, StudyError> {
-    let mut table = Table1 { facts: study.facts(), scenes: Vec::new() };
-    for path in scenes {
-        let subject = study.subject(path)?;
-        let reference = study.reference(&subject, Estimand::Pixels)?;
-        let light = study.reference(&subject, eye_samples())?;
-        let entries = entries(study, &subject);
-        let runs: Vec<Run> =
-            entries.iter().map(|entry| study.run(&subject, &entry.candidate)).collect::<Result<_, _>>()?;
-        table.scenes.push(SceneTable {
-            scene: subject.name.clone(),
-            triangles: subject.triangles,
-            reference: reference.noise,
-            light_reference: light.noise,
-            rows: rows(&entries, &runs, &reference, &light)?,
-            pictures: Pictures {
-                exposure: reference.exposure,
-                reference: reference.mean,
-                rows: runs.into_iter().map(|run| run.color).collect(),
-            },
-        });
-    }
-    Ok(Results { json: serde_json::json!(table), document: document::document(&table) })
-}
-
-fn rows(
-    entries: &[Entry],
-    runs: &[Run],
-    reference: &Reference,
-    light: &Reference,
-) -> Result<Vec<Row>, StudyError> {
-    let mut rows = Vec::with_capacity(runs.len());
-    let lightcuts = entries.iter().position(|entry| entry.main && entry.family == Family::Lightcuts);
-    for (i, (entry, run)) in entries.iter().zip(runs).enumerate() {
-        let whole = entry.candidate.method.estimand() == Estimand::Pixels;
-        let errors = Errors::against(&run.color, reference)?;
-        let light = if whole { errors } else { Errors::against(&run.color, light)? };
-        let mut row = Row::new(entry, run, [errors, light]);
-        if let Some(lightcuts) = lightcuts.filter(|&l| l != i && !whole) {
-            row.against_lightcuts = Some(Errors::between(&run.color, &runs[lightcuts].color)?);
-        }
-        rows.push(row);
-    }
-    let versus: Vec<_> = rows.iter().map(|row| OPPONENTS.map(|other| versus(row, &rows, other))).collect();
-    rows.iter_mut().zip(versus).for_each(|(row, versus)| row.versus = versus);
-    Ok(rows)
-}
-
-/// Compares with another family: its own row, and the curve of all its rows.
-fn versus(row: &Row, rows: &[Row], (family, label): (Family, &str)) -> Option<Versus> {
-    let own = rows.iter().find(|other| other.label == label)?;
-    let at_equal = |error: fn(&Row) -> f64| {
-        let others = rows.iter().filter(|other| other.family == family);
-        let others: Vec<_> = others.map(|other| (other.total, error(other))).collect();
-        let time = time_to(error(row), &others).filter(|_| row.family != family)?;
-        time.over(Bounded::About(row.total.max(f64::MIN_POSITIVE)))
+/// Compares a row with an opponent: with its main row, and with the curve of all its rows.
+fn versus(answer: &Answer, shot: &Shot, opponent: usize) -> Option<Versus> {
+    let (group, method) = OPPONENTS[opponent];
+    let own = shot.seconds().max(f64::MIN_POSITIVE);
+    let at_equal = |error: fn(&Shot) -> f64| {
+        let others = answer.shots.iter().filter(|other| other.candidate.group == group);
+        let others: Vec<_> = others.map(|other| (other.seconds(), error(other))).collect();
+        let time = time_to(error(shot), &others).filter(|_| shot.candidate.group != group)?;
+        time.over(Bounded::About(own))
     };
     Some(Versus {
-        method: label.to_owned(),
-        speed: own.total / row.total.max(f64::MIN_POSITIVE),
-        at_equal_flip: at_equal(|row| row.against_reference.flip),
-        at_equal_psnr: at_equal(|row| row.against_reference.displayed_rmse()),
-        at_equal_light: at_equal(|row| row.light.rel_mse),
+        method,
+        speed: answer.find(method)?.seconds() / own,
+        at_equal_flip: at_equal(|s| s.errors.flip),
+        at_equal_psnr: at_equal(|s| s.errors.displayed_rmse()),
+        at_equal_light: at_equal(|s| s.light.map_or(f64::NAN, |e| e.rel_mse)),
     })
 }
 
-impl SceneTable {
-    /// Finds a row by its label.
-    fn row(&self, label: &str) -> Option<&Row> {
-        self.rows.iter().find(|row| row.label == label)
+fn speed(answer: &Answer, shot: &Shot, opponent: usize) -> Cell {
+    let versus = versus(answer, shot, opponent);
+    Cell::text(versus.map_or("-".to_owned(), |versus| format!("{:.2}", versus.speed)))
+}
+
+fn at_equal(answer: &Answer, shot: &Shot, opponent: usize, of: fn(Versus) -> Option<Bounded>) -> Cell {
+    Cell::bounded(versus(answer, shot, opponent).and_then(of))
+}
+
+fn run(study: &Study, scenes: &[PathBuf]) -> Result<Results, StudyError> {
+    let mut answers = Vec::new();
+    for path in scenes {
+        let subject = study.subject(path)?;
+        let (images, others) = (entries(study, &subject), [lightcuts()]);
+        let question = Question { images: &images, others: &others, ..QUESTION };
+        answers.push(study.ask(question, [Ok(subject)])?);
     }
+    let mut results = Results::new(study, "Table 1", LEGEND);
+    let document = &mut results.document;
+    document.heading(2, "Beside the paper");
+    document.text(
+        "Ratios of times with the light pass; in brackets at equal FLIP / PSNR / error of light. The paper's are the \
+         smallest and largest over its own scenes.",
+    );
+    let scenes = answers.iter().map(|answer| answer.scene.as_str());
+    let heads: Vec<&str> = ["", "paper"].into_iter().chain(scenes).collect();
+    document.grid(&Grid::new(heads.len(), &heads, claims(&answers)));
+    for (number, answer) in answers.iter().enumerate() {
+        let more = json!({ "triangles": answer.triangles, "rows": answer.rows() });
+        results.push("scenes", answer.facts(), more);
+        let document = &mut results.document;
+        document.heading(2, &answer.scene);
+        document.text(&format!("{} triangles. {}", answer.triangles, answer.about()));
+        answer.tell(document);
+        images::show(document, answer, number);
+    }
+    Ok(results)
+}
+
+/// Returns the paper's claims, with its figures and ours for each scene.
+fn claims(answers: &[Answer]) -> Vec<Vec<String>> {
+    let row = |what: &str, paper: String, ours: &dyn Fn(&Answer) -> Option<String>| -> Vec<String> {
+        let ours = answers.iter().map(|answer| ours(answer).unwrap_or("-".to_owned()));
+        [what.to_owned(), paper].into_iter().chain(ours).collect()
+    };
+    let claim = |claim: &paper::Claim| {
+        let [faster, slower] = claim.of;
+        let ours = |answer: &Answer| {
+            let (own, other) = (answer.find(faster)?, answer.find(slower)?);
+            let speed = other.seconds() / own.seconds().max(f64::MIN_POSITIVE);
+            let opponent = OPPONENTS.iter().position(|(_, label)| *label == slower);
+            Some(match opponent.and_then(|opponent| versus(answer, own, opponent)) {
+                Some(v) => {
+                    let equal = [v.at_equal_flip, v.at_equal_psnr, v.at_equal_light].map(bounded);
+                    format!("{speed:.2} ({})", equal.join(" / "))
+                }
+                None => format!("{speed:.2}"),
+            })
+        };
+        let paper = claim.range.map_or("-".to_owned(), |[least, most]| format!("{least} to {most}"));
+        row(claim.what, paper, &ours)
+    };
+    let saved = |answer: &Answer| {
+        let records = |label| answer.find(label)?.counted.records.map(|[d, i]| d + i);
+        let (anisotropic, isotropic) = (records("cache, anisotropic")?, records("cache, isotropic")?);
+        (isotropic > 0.0).then(|| format!("{:.1} %", 100.0 * (1.0 - anisotropic / isotropic)))
+    };
+    let [least, most] = SAVED_BY_ANISOTROPY.map(|share| 100.0 * share);
+    let last = row("records that anisotropy saves", format!("{least} to {most} %"), &saved);
+    CLAIMS.iter().map(claim).chain([last]).collect()
 }

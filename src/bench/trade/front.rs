@@ -1,16 +1,28 @@
 //! The Pareto front, and the effect of each knob in a designed sample.
 
+use super::errors::error_of;
+use crate::study::{Answer, Group, Shot};
+use base::setting::JudgedBy;
 use render::verify::NORMAL_975;
 use serde::Serialize;
 
-/// Marks the points that no other point beats in both figures.
-pub fn front(points: &[(f64, f64)]) -> Vec<bool> {
-    let beats = |a: &(f64, f64), b: &(f64, f64)| a.0 <= b.0 && a.1 <= b.1 && (a.0 < b.0 || a.1 < b.1);
-    points.iter().map(|point| !points.iter().any(|other| beats(other, point))).collect()
+/// Returns true if no other image of the default method is faster and no worse than an image of it. Errors of whole
+/// pixels and of eye samples are not comparable.
+pub fn is_on_front(answer: &Answer, shot: &Shot, error: JudgedBy) -> bool {
+    let place = |shot: &Shot| {
+        let is_own = !matches!(shot.candidate.group, Group::Other | Group::DenoisedPath);
+        let is_judged = is_own && (shot.candidate.whole_pixels() || error == JudgedBy::Flip);
+        Some((shot.seconds(), error_of(shot, error).filter(|_| is_judged)?))
+    };
+    place(shot).is_some_and(|point| is_unbeaten(point, answer.shots.iter().filter_map(place)))
 }
 
-/// Factor by which a figure changes as a knob goes from its coarsest to its finest level, all others varied
-/// too.
+/// Returns true if no other point beats a point in both figures.
+fn is_unbeaten((x, y): (f64, f64), mut others: impl Iterator<Item = (f64, f64)>) -> bool {
+    !others.any(|other| other.0 <= x && other.1 <= y && (other.0 < x || other.1 < y))
+}
+
+/// Factor by which a figure changes from a knob's coarsest to its finest level while all others vary.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Effect {
     /// The factor.
@@ -20,10 +32,10 @@ pub struct Effect {
 }
 
 /// Minimum number of points for a confidence interval.
-const FEWEST: usize = 6;
+const MIN_POINTS: usize = 6;
 
-/// Fits the logarithm of `values` over `places`, a knob's levels from 0 to 1, by least squares. `None` for
-/// too few points, or if the knob does not vary.
+/// Fits the logarithm of `values` over `places`, a knob's levels from 0 to 1, by least squares. `None` for too few
+/// points, or if the knob does not vary.
 pub fn effect(places: &[f64], values: &[f64]) -> Option<Effect> {
     let points: Vec<(f64, f64)> =
         places.iter().zip(values).filter(|(_, v)| **v > 0.0).map(|(p, v)| (*p, v.ln())).collect();
@@ -32,7 +44,7 @@ pub fn effect(places: &[f64], values: &[f64]) -> Option<Effect> {
     let (x, y) = (mean(|p| p.0), mean(|p| p.1));
     let xx: f64 = points.iter().map(|p| (p.0 - x).powi(2)).sum();
     let xy: f64 = points.iter().map(|p| (p.0 - x) * (p.1 - y)).sum();
-    if points.len() < FEWEST || xx <= 0.0 {
+    if points.len() < MIN_POINTS || xx <= 0.0 {
         return None;
     }
     let slope = xy / xx;
@@ -85,7 +97,8 @@ mod tests {
     #[test]
     fn the_front_holds_what_nothing_beats() {
         let points = [(1.0, 4.0), (2.0, 2.0), (2.0, 3.0), (4.0, 1.0), (5.0, 1.0), (2.0, 2.0)];
-        assert_eq!(front(&points), [true, true, false, true, false, true]);
+        let front = points.map(|point| is_unbeaten(point, points.into_iter()));
+        assert_eq!(front, [true, true, false, true, false, true]);
     }
 
     #[test]

@@ -1,20 +1,25 @@
-//! Settings that trade error for time, each with its levels from coarse to fine around the default.
+//! Settings that trade error for time, each with its levels from coarse to fine around the default, and builds of the
+//! acceleration structure.
 //!
-//! Coarse levels should be faster, fine ones better, where a setting has such an order.
+//! Coarse levels should be faster and fine ones better, if a setting has such an order.
 
+use crate::study::{Candidate, Group};
 use base::setting::{JudgedBy, Levels, Spec, Value};
+use embree::BuildQuality;
 use render::method::{Method, reconstruction};
 use transport::paths::Estimand;
 
-/// A setting, or one number of several that it has.
+/// A setting, one of its numbers, or a choice between builds.
 pub struct Knob {
-    /// Its option on the command line.
+    /// Option on the command line, or name of the choice.
     pub name: String,
     key: &'static str,
     part: usize,
-    /// From coarse to fine.
+    /// Levels from coarse to fine.
     pub levels: Vec<Level>,
-    /// Method rendered where the setting is varied alone, one on which it has an effect.
+    /// Builds of the levels, in a choice between builds.
+    pub builds: &'static [BuildQuality],
+    /// Method rendered in a sweep, on which the setting has an effect.
     pub base: Method,
     /// Error that the knob is judged by.
     pub judged_by: JudgedBy,
@@ -24,37 +29,82 @@ pub struct Knob {
 pub struct Level {
     /// The value as text.
     pub text: String,
-    /// As a number, where it is one.
+    /// The value, if it is a number.
     number: Option<f64>,
 }
 
 impl Knob {
-    /// Sets it to a level.
-    pub fn turn(&self, level: &Level, method: &mut Method) {
-        match level.number {
+    /// Returns the name without dashes in front.
+    pub fn plain_name(&self) -> &str {
+        self.name.trim_start_matches('-')
+    }
+
+    /// Returns the label of a level.
+    pub fn label(&self, level: usize) -> String {
+        format!("{} {}", self.name, self.levels[level].text)
+    }
+
+    /// Returns the image of a level in a sweep.
+    pub fn candidate(&self, level: usize) -> Candidate {
+        let mut method = self.base;
+        self.turn(level, &mut method);
+        let (label, build) = (self.label(level), self.builds.get(level).copied());
+        Candidate { build, options: label.clone(), group: Group::Sweep, ..Candidate::new(label, method) }
+    }
+
+    /// Sets a level.
+    pub fn turn(&self, level: usize, method: &mut Method) {
+        let Level { text, number } = &self.levels[level];
+        match number {
             Some(number) => method.each(&mut |spec, value| {
                 if spec.key == self.key {
-                    spec.set_number(value, self.part, number);
+                    spec.set_number(value, self.part, *number);
                 }
             }),
-            // Levels are valid by their declaration; a test sets them all.
-            None => drop(method.set(self.key, &level.text)),
+            // A test sets all levels. Builds have no setting.
+            None => drop(method.set(self.key, text)),
         }
     }
 
-    /// Its index among the levels that leave `method` as it is.
+    /// Returns the index of the level that leaves `method` as it is.
     pub fn level_of(&self, method: &Method) -> Option<usize> {
-        let same = |level: &Level| {
+        let same = |level: &usize| {
             let mut turned = *method;
-            self.turn(level, &mut turned);
+            self.turn(*level, &mut turned);
             turned.settings() == method.settings()
         };
-        self.levels.iter().position(same)
+        (0..self.levels.len()).find(same)
     }
 }
 
-/// Returns all knobs of the default method.
+/// Returns all knobs of the default method, then the choices between builds.
 pub fn knobs() -> Vec<Knob> {
+    let mut knobs = settings();
+    knobs.push(builds(
+        "build quality",
+        &["low", "medium", "high"],
+        &[BuildQuality::Low, BuildQuality::Medium, BuildQuality::High],
+    ));
+    knobs.push(builds("robust traversal", &["off", "on"], &[BuildQuality::Medium, BuildQuality::Robust]));
+    knobs
+}
+
+/// Returns a choice between builds of the acceleration structure.
+fn builds(name: &str, levels: &[&str], builds: &'static [BuildQuality]) -> Knob {
+    let level = |text: &&str| Level { text: (*text).to_owned(), number: None };
+    Knob {
+        name: name.to_owned(),
+        key: "",
+        part: 0,
+        levels: levels.iter().map(level).collect(),
+        builds,
+        base: Method::default(),
+        judged_by: JudgedBy::Limit,
+    }
+}
+
+/// Returns the knobs that are settings of the default method.
+fn settings() -> Vec<Knob> {
     let mut knobs: Vec<Knob> = Vec::new();
     Method::default().visit(&mut |spec, value| {
         let Some(levels) = spec.levels() else { return };
@@ -76,6 +126,7 @@ pub fn knobs() -> Vec<Knob> {
                 key: spec.key,
                 part,
                 levels: levels_of(spec, levels, value, part),
+                builds: &[],
                 base,
                 judged_by: levels.judged_by,
             });
@@ -84,48 +135,41 @@ pub fn knobs() -> Vec<Knob> {
     knobs
 }
 
-/// Values, or multiples of the default, with equal ones merged.
+/// Returns the levels, which are values or multiples of the default, without repetitions.
 fn levels_of(spec: &'static Spec, levels: &Levels, value: &mut dyn Value, part: usize) -> Vec<Level> {
     let default = value.numbers().get(part).copied();
-    let mut found: Vec<Level> =
+    let mut all: Vec<Level> =
         levels.values.iter().map(|text| Level { text: (*text).to_owned(), number: None }).collect();
     for factor in levels.factors {
         spec.set_number(value, part, factor * default.unwrap_or(0.0));
         let number = value.numbers().get(part).copied();
         let text = number.map_or(String::new(), |number| number.to_string());
-        if found.iter().all(|level| level.text != text) {
-            found.push(Level { text, number });
+        if all.iter().all(|level| level.text != text) {
+            all.push(Level { text, number });
         }
     }
     if let Some(default) = default {
         spec.set_number(value, part, default);
     }
-    found
+    all
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::study::eye_samples;
-    use crate::trade::has_default_samples;
+    use crate::trade::limit_of;
 
     #[test]
     fn every_knob_has_distinct_levels_that_change_the_settings_and_holds_the_default() {
-        let knobs = knobs();
+        let knobs = settings();
         assert!(knobs.iter().any(|knob| knob.name == "--reach, largest"));
         for knob in &knobs {
-            let turned = |level: &Level| {
-                let mut method = knob.base;
-                knob.turn(level, &mut method);
-                method.settings()
-            };
-            let found: Vec<_> = knob.levels.iter().map(turned).collect();
+            let candidates: Vec<Candidate> =
+                (0..knob.levels.len()).map(|level| knob.candidate(level)).collect();
+            let found: Vec<_> = candidates.iter().map(|c| c.method.settings()).collect();
             assert!(found.len() > 1 && knob.level_of(&knob.base).is_some(), "{}", knob.name);
-            for level in knob.levels.iter().filter(|_| knob.judged_by != JudgedBy::Flip) {
-                let mut method = knob.base;
-                knob.turn(level, &mut method);
-                let has_limit = has_default_samples(&method) || method.estimand() == eye_samples();
-                assert!(has_limit, "{} {}", knob.name, level.text);
+            for candidate in candidates.iter().filter(|_| knob.judged_by != JudgedBy::Flip) {
+                assert!(limit_of(candidate).is_some(), "{}", candidate.label);
             }
             for i in 1..found.len() {
                 assert!(!found[..i].contains(&found[i]), "{}: {}", knob.name, knob.levels[i].text);

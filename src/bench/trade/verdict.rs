@@ -18,11 +18,11 @@ pub enum Course {
     Rises(f64),
     /// Monotonic fall; the first value over the last.
     Falls(f64),
-    /// Rise and fall: the pairs of levels between which it moves against its overall direction.
+    /// Rise and fall: the pairs of levels between which the figure moves against its overall direction.
     Mixed(Vec<[String; 2]>),
 }
 
-/// Returns the course of values from coarse to fine, with the levels' names.
+/// Returns the course of values from coarse to fine; `names` are those of the levels.
 pub fn course(values: &[f64], names: &[String], tolerance: f64) -> Course {
     let step = |from: f64, to: f64| match to / from {
         ratio if ratio > 1.0 + tolerance => 1,

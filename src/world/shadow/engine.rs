@@ -5,13 +5,14 @@
 use super::cache::{OccluderCache, OccluderCacheSettings};
 use super::counts::{Counters, ShadowCounts};
 use crate::World;
-use embree::{Occluder, Occluders16, Ray, Rays16};
+use base::math::lanes_in;
+use embree::{Occluder, Occluders16, Ray, Rays16, TriangleId};
 use std::cell::RefCell;
 
 /// Shadow queries in a world.
 pub struct Engine<'w> {
     world: &'w World,
-    /// Occluder cache for single rays. Packets do not use it (see [`super::ShadowSettings`]).
+    /// Occluder cache. The packets of methods do not use it (see [`super::ShadowSettings`]).
     cache: Option<RefCell<OccluderCache>>,
     /// True if packets hold rays from neighbouring points.
     coherent: bool,
@@ -84,6 +85,30 @@ impl<'w> Engine<'w> {
     pub fn occluded16(&self, rays: &Rays16, valid: u16) -> u16 {
         let occluded = self.world.accel.occluded16(rays, valid, self.coherent);
         self.counters.packets.count(valid.count_ones(), occluded.count_ones(), 0);
+        occluded
+    }
+
+    /// Like [`Engine::occluded16`], but asks the occluder cache about each ray before the others are traced. `key`
+    /// identifies the light in the cache.
+    ///
+    /// Methods do not call it (see [`super::ShadowSettings`]); a benchmark tells its gain.
+    pub fn occluded16_cached(&self, rays: &Rays16, valid: u16, key: u32) -> u16 {
+        let Some(cache) = &self.cache else { return self.occluded16(rays, valid) };
+        let mut cache = cache.borrow_mut();
+        let is_known = |lane: &usize| cache.occluder(key, &rays.get(*lane)).is_some();
+        let known = lanes_in(valid).filter(is_known).fold(0, |mask, lane| mask | 1 << lane);
+        let mut found = Occluders16::default();
+        let traced = match valid & !known {
+            0 => 0,
+            rest => self.world.accel.occluders16(rays, rest, self.coherent, &mut found),
+        };
+        for lane in lanes_in(traced) {
+            let id = TriangleId { geometry: found.geometry[lane], primitive: found.primitive[lane] };
+            let (corner, edges) = self.world.corner_and_edges(id);
+            cache.keep(key, id, corner, edges);
+        }
+        let occluded = known | traced;
+        self.counters.packets.count(valid.count_ones(), occluded.count_ones(), known.count_ones());
         occluded
     }
 

@@ -203,3 +203,21 @@ fn packets_of_any_width_agree_with_single_rays() {
         assert_eq!((counts.packets.queries, counts.packets.rays, counts.single.rays), (2, rays, 0));
     }
 }
+
+#[test]
+fn the_cache_changes_no_answer_of_packets() {
+    let world = world();
+    let corners = all_corners(&world);
+    let cached = Engine::with(&world, true, OccluderCacheSettings { slots: 128, ways: 4 });
+    let mut numbers = Numbers(0, 6);
+    for _ in 0..20_000 {
+        // Few triangles a light, so that the next rays pass close to the cached ones.
+        let key = numbers.bits() % KEYS;
+        let rays = neighbours(&corners[key as usize * 3..][..3], &mut numbers);
+        let valid = numbers.bits() as u16;
+        let expected = world.accel.occluded_by(Width::One, &rays, valid, false);
+        assert_eq!(cached.occluded16_cached(&rays, valid, key), expected);
+    }
+    let counts = cached.take_counts().packets;
+    assert!(counts.saved > 0 && counts.saved < counts.occluded, "{counts:?}");
+}

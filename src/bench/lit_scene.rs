@@ -1,4 +1,4 @@
-//! Inputs of benchmarks on a scene: its eye samples, its virtual lights in their trees.
+//! A scene's eye samples and virtual lights, the inputs of benchmarks of parts.
 
 use super::Context;
 use base::math::{Frame, LANES};
@@ -7,36 +7,38 @@ use base::sampling::hash;
 use render::session::Session;
 use std::ops::Range;
 use transport::eye::{EyePass, EyeSettings};
-use transport::lightcut::{CoherenceLimit, OrientedPoint, Receiver, Transfer, group_coherent};
-use transport::lights::{Family, LightNode, LightPass, LightPassSettings, LightTrees, light_pass};
+use transport::lightcut::{
+    CoherenceLimit, OrientedPoint, Receiver, ReceiverPacket, Transfer, group_coherent, group_compact,
+};
+use transport::lights::{Family, LightPass, LightPassSettings, LightTrees, light_pass};
 use world::World;
 use world::view::View;
 
 /// Number of neighbouring eye samples in a stretch.
 const STRETCH: usize = 64;
-/// Number of stretches, spread over the picture.
+/// Number of stretches, which are spread over the image.
 const STRETCHES: usize = 6;
 
 /// A scene with its eye samples and virtual lights.
-pub(super) struct Setting<'w> {
+pub(super) struct LitScene<'w> {
     pub world: &'w World,
     pub samples: EyePass<'w>,
     pub trees: LightTrees,
 }
 
-impl<'w> Setting<'w> {
-    /// Prepares a scene with the renderers' default settings. `None` if there is no scene.
-    pub fn new(context: &Context<'w>) -> Option<Setting<'w>> {
+impl<'w> LitScene<'w> {
+    /// Traces eye samples and virtual lights using the renderers' default settings. `None` without a scene.
+    pub fn new(context: &Context<'w>) -> Option<LitScene<'w>> {
         let Session { world, cameras, .. } = context.session?;
         let view = View::whole(cameras.still, cameras.resolution);
         let depth = world.scene.path_limit(None);
-        (context.say)("looking at the scene and lighting it");
+        (context.say)("tracing eye samples and virtual lights");
         let eye = EyeSettings { spp: 1, seed: 0, max_depth: depth };
         let samples = EyePass::trace(world, &view, eye, &Control::new());
         let LightPass { sets, profiles, .. } =
             light_pass(world, &LightPassSettings::default(), &[], depth, &Control::new());
         let trees = LightTrees::build(&sets, profiles, world.diagonal, Family::default(), &Control::new());
-        Some(Setting { world, samples, trees })
+        Some(LitScene { world, samples, trees })
     }
 
     /// Returns the transfer of light to points.
@@ -45,14 +47,14 @@ impl<'w> Setting<'w> {
     }
 
     /// Returns the surface at an eye sample, as lightcuts per pixel shade it.
-    pub fn reflector(&self, sample: usize) -> Receiver<'w> {
+    pub fn surface(&self, sample: usize) -> Receiver<'w> {
         let (point, surface) = (&self.samples.points.geometry[sample], &self.samples.points.surfaces[sample]);
         let frame = Frame::from_normal(point.normal);
         Receiver::new(point.position, surface.geometric_normal, &frame, surface.bsdf, surface.out)
     }
 
-    /// Returns the same as a receiver of irradiance, as records use it.
-    pub fn collector(&self, sample: usize) -> Receiver<'static> {
+    /// Returns a receiver of irradiance at an eye sample, as records use it.
+    pub fn irradiance(&self, sample: usize) -> Receiver<'static> {
         let (point, surface) = (&self.samples.points.geometry[sample], &self.samples.points.surfaces[sample]);
         Receiver::irradiance(point.position, surface.geometric_normal, &Frame::from_normal(point.normal))
     }
@@ -64,28 +66,36 @@ impl<'w> Setting<'w> {
         (0..STRETCHES).map(|s| first(s)..first(s) + length).collect()
     }
 
-    /// Returns stretches of eye samples that are neighbours in space, as pixels are.
-    pub fn pixels(&self) -> Vec<Vec<usize>> {
+    /// Returns stretches of eye samples that are neighbours in space.
+    pub fn stretches(&self) -> Vec<Vec<usize>> {
         self.spread(self.samples.len()).into_iter().map(Iterator::collect).collect()
     }
 
-    /// Divides a stretch into groups that share a cut.
+    /// Divides a stretch into groups of pixels that share a cut.
     pub fn groups(&self, stretch: &[usize]) -> Vec<Vec<usize>> {
-        let place = |&sample: &usize| {
-            let point = &self.samples.points.geometry[sample];
-            OrientedPoint { position: point.position, normal: point.normal }
-        };
         let limit = CoherenceLimit::close(self.world.diagonal);
-        group_coherent(limit, stretch.iter().copied(), LANES, place, |_, _| true)
+        group_coherent(limit, stretch.iter().copied(), LANES, |&sample| self.place(sample), |_, _| true)
     }
 
-    /// Returns all single lights, neighbours in their tree next to each other.
-    pub fn leaves(&self) -> Vec<&LightNode> {
-        self.trees.leaves().collect()
+    /// Divides a stretch into groups of cache records that share a cut.
+    pub fn groups_of_records(&self, stretch: &[usize]) -> Vec<Vec<usize>> {
+        group_compact(stretch.to_vec(), self.world.diagonal, |&sample| self.place(sample))
+    }
+
+    fn place(&self, sample: usize) -> OrientedPoint {
+        let point = &self.samples.points.geometry[sample];
+        OrientedPoint { position: point.position, normal: point.normal }
     }
 }
 
-/// A random number generator of fixed seed.
+/// Returns receivers in lanes.
+pub(super) fn packet<'m>(receivers: impl Iterator<Item = Receiver<'m>>) -> ReceiverPacket<'m> {
+    let mut packet = ReceiverPacket::new();
+    packet.set(receivers);
+    packet
+}
+
+/// A random number generator with a fixed seed.
 pub(super) struct Dice(pub u32);
 
 impl Dice {
@@ -93,5 +103,10 @@ impl Dice {
     pub fn below(&mut self, n: usize) -> usize {
         self.0 += 1;
         ((u64::from(hash(self.0, 0xbe7c)) * n as u64) >> 32) as usize
+    }
+
+    /// Returns a number from 0 up to 1.
+    pub fn unit(&mut self) -> f32 {
+        self.below(1 << 24) as f32 / (1 << 24) as f32
     }
 }

@@ -1,0 +1,104 @@
+//! A benchmark, and its inputs.
+
+use super::report::{Report, Table};
+use super::study::{Results, Study, StudyError};
+use render::session::Session;
+use std::path::PathBuf;
+
+/// A benchmark that can be chosen by name.
+pub struct Benchmark {
+    /// Name on the command line.
+    pub name: &'static str,
+    /// Description in a line.
+    pub about: &'static str,
+    /// Kind of benchmark.
+    pub kind: Kind,
+}
+
+/// Kinds of benchmarks.
+pub enum Kind {
+    /// Parts of the renderer.
+    Parts {
+        /// True if it measures on a scene.
+        needs_scene: bool,
+        /// Function that measures.
+        run: fn(&Context) -> Vec<Table>,
+    },
+    /// Whole images.
+    Study {
+        /// Scenes of the study.
+        scenes: Scenes,
+        /// Default width and height of the images.
+        pixels: [u32; 2],
+        /// Function that answers the study's questions about scene files.
+        run: fn(&Study, &[PathBuf]) -> Result<Results, StudyError>,
+    },
+}
+
+/// Scenes of a study.
+pub enum Scenes {
+    /// Files, with the names of the default scenes. If there are none, the user must name scenes.
+    Files(&'static [&'static str]),
+    /// Scenes that the study makes, with the default number of seeds per image.
+    Own(usize),
+}
+
+/// Settings of measurements.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Settings {
+    /// Number of threads of multi-threaded cases.
+    pub threads: usize,
+    /// Number of samples of every case.
+    pub repeats: usize,
+    /// Approximate duration of a sample, seconds.
+    pub seconds: f64,
+}
+
+impl Default for Settings {
+    fn default() -> Settings {
+        Settings { threads: 1, repeats: 7, seconds: 0.05 }
+    }
+}
+
+/// Inputs of a benchmark.
+pub struct Context<'a> {
+    /// The scene; present for benchmarks that need one.
+    pub session: Option<&'a Session>,
+    /// Settings of measurements.
+    pub settings: Settings,
+    /// Callback for progress messages.
+    pub say: &'a dyn Fn(&str),
+}
+
+impl Benchmark {
+    /// Returns the name of its operand in the usage.
+    pub fn operand(&self) -> &'static str {
+        match self.kind {
+            Kind::Parts { needs_scene: false, .. } | Kind::Study { scenes: Scenes::Own(_), .. } => "",
+            Kind::Parts { needs_scene: true, .. } => " SCENE",
+            Kind::Study { scenes: Scenes::Files([]), .. } => " SCENE...",
+            Kind::Study { scenes: Scenes::Files(_), .. } => " [SCENE...]",
+        }
+    }
+
+    /// Makes a report of measured tables.
+    pub fn report(&self, context: &Context, tables: Vec<Table>) -> Report {
+        let mut facts = vec![
+            ("version".to_owned(), env!("CARGO_PKG_VERSION").to_owned()),
+            ("threads".to_owned(), context.settings.threads.to_string()),
+            ("samples per case".to_owned(), context.settings.repeats.to_string()),
+        ];
+        if let Some(Session { world, .. }) = context.session {
+            let triangles = world.scene.triangle_count();
+            facts.push(("triangles".to_owned(), triangles.to_string()));
+            facts.push(("Embree".to_owned(), world.accel.device().version().to_string()));
+            facts.push(("widest packet".to_owned(), world.accel.widest().rays().to_string()));
+        }
+        Report {
+            benchmark: self.name.to_owned(),
+            scene: context.session.map(|s| s.world.scene.name.clone()),
+            facts,
+            tables,
+        }
+    }
+}

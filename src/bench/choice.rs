@@ -1,0 +1,261 @@
+//! How often the planner chooses the better method: the cache, or denoised paths.
+//!
+//! Budgets are the processor seconds of the cache at five levels of its settings. The error of paths within a budget is
+//! interpolated between their images. The cost of a choice is its error over the error of the better method.
+
+use super::study::{
+    Answer, Candidate, Cell, Column, Curve, Errors, Figure, Question, Results, Shot, Study, StudyError,
+    Subject, figure, seconds,
+};
+use super::{Benchmark, Kind, Scenes};
+use base::stats::Stopwatch;
+use render::method::{LightStore, Method};
+use render::plan::{Chooser, DRAFT, FINAL, Ladder, MethodChoice, PREVIEW, options};
+use serde::Serialize;
+use serde_json::json;
+use std::path::PathBuf;
+
+pub(super) const BENCHMARK: Benchmark = Benchmark {
+    name: "choice",
+    about: "How often the planner takes the better of cache and denoised paths, and what its choice costs",
+    kind: Kind::Study {
+        scenes: Scenes::Files(&["cornell", "knot", "nave", "kitchen", "apartment", "hall"]),
+        pixels: [256, 256],
+        run,
+    },
+};
+
+/// Levels of the cache whose times are the budgets. Level 4 is the default.
+const LEVELS: [f64; 5] = [1.0, DRAFT, PREVIEW, 4.0, FINAL];
+
+/// Samples per pixel of the paths.
+const SPP: [u32; 4] = [2, 8, 32, 128];
+
+/// Caption of the tables.
+const LEGEND: &str = "Budgets are the processor seconds of the cache at five levels of its settings. Errors of denoised \
+    paths within a budget are interpolated in logarithms, and extrapolated beyond the last image. RMSE is of the displayed \
+    image, without the noise of the reference. FLIP includes that noise. Expected: work of the other method for the same \
+    quality, over the work of the chosen one. Cost: the error of the choice over the error of the better method.";
+
+/// Images of a scene over processor seconds.
+const QUESTION: Question = Question {
+    table: &[
+        Column::new("spp", "", |_, s| Cell::exact(s.candidate.method.spp())),
+        Column::new("seconds", "", |_, s| Cell::seconds(s.seconds())),
+        Column::new("errors", "", |_, s| Cell::exact(Figures::of(&s.errors))),
+    ],
+    figures: &[Figure {
+        name: "RMSE of the displayed picture",
+        error: |s| Some(s.errors.displayed_rmse()),
+        curves: &[
+            Curve { name: "cache", colour: "#d00", joined: true, holds: |c| !c.is_path() },
+            Curve { name: "path --denoise", colour: "#0a7", joined: true, holds: |c| c.is_path() },
+        ],
+    }],
+    ..Question::PLAIN
+};
+
+/// Table of a scene's budgets.
+const BUDGETS: &[Column<Budget>] = &[
+    Column::new("options", "cache", |_, b| Cell::text(&b.options)),
+    Column::new("chose_paths", "", |_, b| Cell::exact(b.chose_paths)),
+    Column::new("", "chosen", |_, b| Cell::text(if b.chose_paths { "paths" } else { "cache" })),
+    Column::new("seconds", "seconds", |_, b| Cell::seconds(b.seconds)),
+    Column::new("cache", "", |_, b| Cell::exact(b.cache)),
+    Column::new("paths", "", |_, b| Cell::exact(b.paths)),
+    Column::new("", "RMSE: cache", |_, b| Cell::figure(b.cache.displayed)),
+    Column::new("", "paths", |_, b| Cell::figure(b.paths.displayed)),
+    Column::new("", "FLIP: cache", |_, b| Cell::figure(b.cache.flip)),
+    Column::new("", "paths", |_, b| Cell::figure(b.paths.flip)),
+    Column::new("ahead", "expected", |_, b| Cell::figure(b.ahead)),
+    Column::new("cost", "", |_, b| Cell::exact(b.cost)),
+    Column::new("", "cost: RMSE", |_, b| Cell::figure(b.cost.displayed)),
+    Column::new("", "FLIP", |_, b| Cell::figure(b.cost.flip)),
+];
+
+/// A budget, and the errors of both methods within it.
+struct Budget {
+    /// Settings of the cache that take it.
+    options: String,
+    seconds: f64,
+    cache: Figures,
+    /// Interpolated errors.
+    paths: Figures,
+    chose_paths: bool,
+    /// Expected work of the other method over the work of the chosen one.
+    ahead: f64,
+    /// Errors of the choice over the errors of the better method.
+    cost: Figures,
+}
+
+/// Errors that choices are judged by.
+#[derive(Clone, Copy, Serialize)]
+struct Figures {
+    /// Root mean square error of the displayed image.
+    displayed: f64,
+    flip: f64,
+}
+
+/// The planner's pilot of a scene.
+struct Pilot {
+    chooser: Chooser,
+    ladder: Ladder,
+    /// Processor seconds that it took.
+    seconds: f64,
+}
+
+/// Answer for a scene.
+struct Scene {
+    answer: Answer,
+    budgets: Vec<Budget>,
+    pilot_seconds: f64,
+    /// Choice at the default settings.
+    choice: MethodChoice,
+}
+
+fn run(study: &Study, files: &[PathBuf]) -> Result<Results, StudyError> {
+    let mut scenes = Vec::new();
+    for file in files {
+        scenes.extend(scene(study, study.subject(file)?)?);
+    }
+    let mut results = Results::new(study, "Choices between methods", LEGEND);
+    total(&mut results, scenes.iter().flat_map(|scene| &scene.budgets));
+    scenes.iter().for_each(|scene| section(&mut results, scene));
+    Ok(results)
+}
+
+/// Returns the answer for a scene; `None` if there is nothing to choose.
+fn scene(study: &Study, subject: Subject) -> Result<Option<Scene>, StudyError> {
+    let Some(pilot) = Pilot::new(study, &subject) else {
+        (study.say)(&format!("{}: there is no light, and nothing to choose", subject.name));
+        return if study.control.is_cancelled() { Err(StudyError::Interrupted) } else { Ok(None) };
+    };
+    let level = |level| Candidate::new(format!("cache, level {level}"), pilot.ladder.at(level));
+    let images: Vec<_> = SPP.map(Candidate::denoised_path).into_iter().chain(LEVELS.map(level)).collect();
+    let answer = study.ask(Question { images: &images, ..QUESTION }, [Ok(subject)])?;
+    let (paths, cache) = answer.shots.split_at(SPP.len());
+    let budgets = cache.iter().map(|shot| Budget::new(shot, paths, &pilot.chooser)).collect();
+    let choice = pilot.chooser.on_film(&Method::default());
+    Ok(Some(Scene { answer, budgets, pilot_seconds: pilot.seconds, choice }))
+}
+
+impl Pilot {
+    fn new(study: &Study, subject: &Subject) -> Option<Pilot> {
+        let watch = Stopwatch::start();
+        let (world, lights) = (&subject.session.world, &LightStore::default());
+        let chooser = Chooser::new(world, lights, &subject.view, &Method::default(), study.control)?;
+        let seconds = watch.elapsed().cpu_seconds;
+        Some(Pilot { chooser, ladder: Ladder::new(Method::default(), &[])?, seconds })
+    }
+}
+
+impl Budget {
+    fn new(shot: &Shot, paths: &[Shot], chooser: &Chooser) -> Budget {
+        let method = &shot.candidate.method;
+        let curve: Vec<(f64, Figures)> =
+            paths.iter().map(|path| (path.seconds(), Figures::of(&path.errors))).collect();
+        let (cache, paths) = (Figures::of(&shot.errors), error_within(shot.seconds(), &curve));
+        let choice = chooser.on_film(method);
+        let chose_paths = matches!(choice.method, Method::Path(_));
+        let chosen = if chose_paths { paths } else { cache };
+        let cost = |chosen: f64, best: f64| if chosen > best { chosen / best } else { 1.0 };
+        Budget {
+            options: options(method),
+            seconds: shot.seconds(),
+            cache,
+            paths,
+            chose_paths,
+            ahead: choice.ahead,
+            cost: chosen.with(cache.with(paths, f64::min), cost),
+        }
+    }
+}
+
+impl Figures {
+    fn of(errors: &Errors) -> Figures {
+        Figures { displayed: errors.displayed_rmse(), flip: errors.flip }
+    }
+
+    fn with(self, other: Figures, f: impl Fn(f64, f64) -> f64) -> Figures {
+        Figures { displayed: f(self.displayed, other.displayed), flip: f(self.flip, other.flip) }
+    }
+}
+
+/// Returns the errors of images that take some seconds: along the lines between images in logarithms, and beyond the
+/// last image.
+fn error_within(seconds: f64, images: &[(f64, Figures)]) -> Figures {
+    let above = images.iter().position(|image| image.0 >= seconds).unwrap_or(images.len());
+    let last = above.clamp(1, images.len() - 1);
+    let (a, b) = (&images[last - 1], &images[last]);
+    let share = (seconds / a.0).ln() / (b.0 / a.0).ln();
+    a.1.with(b.1, |a, b| a * (b / a).powf(share))
+}
+
+/// Adds the costs over all budgets.
+fn total<'b>(results: &mut Results, budgets: impl Iterator<Item = &'b Budget>) {
+    // Some images differ from the reference by its noise alone.
+    let measurable = |budget: &&Budget| budget.cache.displayed.min(budget.paths.displayed) > 0.0;
+    let costs: Vec<Figures> = budgets.filter(measurable).map(|budget| budget.cost).collect();
+    let at = |i: usize| {
+        let of = |of: fn(&Figures) -> f64| {
+            let mut values: Vec<f64> = costs.iter().map(of).collect();
+            values.sort_by(f64::total_cmp);
+            values.get(i).copied().unwrap_or(f64::NAN)
+        };
+        Figures { displayed: of(|cost| cost.displayed), flip: of(|cost| cost.flip) }
+    };
+    let (median, worst) = (at(costs.len() / 2), at(costs.len().saturating_sub(1)));
+    let right = costs.iter().filter(|cost| cost.displayed <= 1.0).count();
+    results.json["total"] =
+        json!({ "right": right, "choices": costs.len(), "median": median, "worst": worst });
+    let text = |of: Figures| format!("{} by RMSE, {} by FLIP", figure(of.displayed), figure(of.flip));
+    results.document.text(&format!(
+        "{right} of {} choices were right by RMSE. Cost: median {}; worst {}.",
+        costs.len(),
+        text(median),
+        text(worst)
+    ));
+}
+
+fn section(results: &mut Results, scene: &Scene) {
+    let Scene { answer, budgets, pilot_seconds, choice } = scene;
+    let pilot = json!({
+        "pilot_seconds": pilot_seconds,
+        "pilot_rays": choice.pilot_rays,
+        "paths_a_sample": choice.paths_a_sample,
+        "rays_ratio": choice.rays_ratio,
+        "budgets": answer.objects(BUDGETS, budgets),
+        "paths": answer.objects(QUESTION.table, &answer.shots[..SPP.len()]),
+    });
+    results.push("scenes", answer.facts(), pilot);
+    let document = &mut results.document;
+    document.heading(2, &answer.scene);
+    document.text(&format!(
+        "A sample of the cache equals {} paths, each with {} times its rays. The pilot took {} s, {} rays.",
+        figure(choice.paths_a_sample),
+        figure(choice.rays_ratio),
+        seconds(*pilot_seconds),
+        choice.pilot_rays
+    ));
+    document.grid(&answer.grid_of(BUDGETS, 2, budgets));
+    answer.draw(document);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn errors_are_interpolated_between_images_and_go_on_beyond_them() {
+        // The error halves as the time is four times as long.
+        let image = |seconds, error| (seconds, Figures { displayed: error, flip: 2.0 * error });
+        let paths = [image(1.0, 0.4), image(4.0, 0.2), image(16.0, 0.1)];
+        for (seconds, expected) in
+            [(0.25, 0.8), (1.0, 0.4), (2.0, 0.4 / 2f64.sqrt()), (16.0, 0.1), (64.0, 0.05)]
+        {
+            let found = error_within(seconds, &paths);
+            assert!((found.displayed / expected - 1.0).abs() < 1e-9, "{seconds} {}", found.displayed);
+            assert!((found.flip / (2.0 * expected) - 1.0).abs() < 1e-9);
+        }
+    }
+}

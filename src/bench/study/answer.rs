@@ -1,0 +1,114 @@
+//! Tables and figures of answers.
+
+use super::cell::figure;
+use super::reference::Noise;
+use super::{Answer, Axis, Column, Curve, Shot};
+use crate::document::{Document, Grid};
+use crate::plot::{Point, Series, scatter};
+use serde_json::{Value, json};
+
+impl Answer {
+    /// Returns the scene's name and the noise of its references.
+    pub fn facts(&self) -> Value {
+        let mut facts = json!({ "scene": self.scene });
+        if let Some(reference) = &self.reference {
+            facts["reference"] = json!(reference.noise);
+        }
+        if let Some(reference) = &self.light_reference {
+            facts["light_reference"] = json!(reference.noise);
+        }
+        facts
+    }
+
+    /// Describes the references.
+    pub fn about(&self) -> String {
+        let mut text = self.reference.as_ref().map_or_else(String::new, |reference| reference.noise.about());
+        if let Some(Noise { spp, rel_mse, .. }) = self.light_reference.as_ref().map(|light| light.noise) {
+            text += &format!(" Reference of eye samples: {spp} paths per pixel, relMSE {}.", figure(rel_mse));
+        }
+        text
+    }
+
+    /// Returns an object per image.
+    pub fn rows(&self) -> Value {
+        self.objects(self.question.table, &self.shots)
+    }
+
+    /// Returns the table of some images.
+    pub fn grid<'s>(&self, shots: impl IntoIterator<Item = &'s Shot>) -> Grid {
+        self.grid_of(self.question.table, self.question.names, shots)
+    }
+
+    /// Adds the table of all images, with mere points of curves in grey, and the figures.
+    pub fn tell(&self, document: &mut Document) {
+        let mut grid = self.grid(&self.shots);
+        grid.minor = (0..self.shots.len()).filter(|&i| !self.shots[i].candidate.main).collect();
+        document.grid(&grid);
+        self.draw(document);
+    }
+
+    /// Adds the figures.
+    pub fn draw(&self, document: &mut Document) {
+        for figure in self.question.figures {
+            let series = |curve: &Curve| Series {
+                name: curve.name.to_owned(),
+                colour: curve.colour,
+                joined: curve.joined,
+                points: self.points(self.shots.iter().filter(|s| (curve.holds)(&s.candidate)), figure.error),
+            };
+            let series: Vec<Series> = figure.curves.iter().map(series).collect();
+            document.figure(&scatter(self.axis(), figure.name, &series));
+        }
+    }
+
+    /// Returns points over the question's axis, in its order.
+    pub fn points<'s>(
+        &self,
+        shots: impl IntoIterator<Item = &'s Shot>,
+        at: impl Fn(&Shot) -> Option<f64>,
+    ) -> Vec<Point> {
+        let point = |shot: &Shot| {
+            let (x, name) = match self.question.axis {
+                Axis::Seconds => (shot.seconds(), shot.candidate.label.clone()),
+                Axis::Value(_) => (shot.value, String::new()),
+            };
+            Some(Point { x, y: at(shot)?, name })
+        };
+        let mut points: Vec<Point> = shots.into_iter().filter_map(point).collect();
+        points.sort_by(|a, b| a.x.total_cmp(&b.x));
+        points
+    }
+
+    /// Returns the name of the horizontal axis.
+    pub fn axis(&self) -> &'static str {
+        match self.question.axis {
+            Axis::Seconds => "processor seconds",
+            Axis::Value(name) => name,
+        }
+    }
+
+    /// Returns an object per record.
+    pub fn objects<R>(&self, columns: &[Column<R>], records: &[R]) -> Value {
+        let object = |record: &R| -> Value {
+            let columns = columns.iter().filter(|column| !column.key.is_empty());
+            columns.map(|column| (column.key.to_owned(), (column.cell)(self, record).exact)).collect()
+        };
+        records.iter().map(object).collect()
+    }
+
+    /// Returns a row per record; the first `names` columns hold text.
+    pub fn grid_of<'r, R: 'r>(
+        &self,
+        columns: &[Column<R>],
+        names: usize,
+        records: impl IntoIterator<Item = &'r R>,
+    ) -> Grid {
+        let records: Vec<&R> = records.into_iter().collect();
+        let text = |column: &Column<R>, record: &R| (column.cell)(self, record).text;
+        let is_empty = |column: &Column<R>| records.iter().all(|record| text(column, record).is_empty());
+        let shown: Vec<_> = columns.iter().filter(|c| !c.head.is_empty() && !is_empty(c)).collect();
+        let row = |record: &&R| shown.iter().map(|column| text(column, record)).collect();
+        let heads: Vec<&str> = shown.iter().map(|column| column.head).collect();
+        Grid::new(names, &heads, records.iter().map(row).collect())
+    }
+}

@@ -1,0 +1,60 @@
+//! A study in progress.
+
+use super::store::{Store, program};
+use super::{Plan, StudyError};
+use base::progress::Control;
+use render::denoise::Denoiser;
+
+/// A study in progress: its plan, its stored images, cancellation and messages.
+pub struct Study<'a> {
+    /// Options chosen on the command line.
+    pub plan: Plan,
+    /// Stops the study between images and within them.
+    pub control: &'a Control,
+    /// Callback for progress messages.
+    pub say: &'a (dyn Fn(&str) + Sync),
+    /// Stored images.
+    pub(super) store: Store,
+    /// Name of the denoiser, if there is one.
+    denoiser: Option<String>,
+}
+
+impl<'a> Study<'a> {
+    /// Creates a study and opens its folder of results.
+    ///
+    /// # Errors
+    /// If the folder cannot be created.
+    pub fn new(
+        plan: Plan,
+        control: &'a Control,
+        say: &'a (dyn Fn(&str) + Sync),
+    ) -> Result<Study<'a>, StudyError> {
+        let store = Store::open(&plan.folder)?;
+        let denoiser = match Denoiser::load() {
+            Ok(denoiser) => Some(denoiser.name()),
+            Err(error) => {
+                say(&format!("images are not denoised, and denoised paths are left out: {error}"));
+                None
+            }
+        };
+        Ok(Study { plan, control, say, store, denoiser })
+    }
+
+    /// Returns true if images can be denoised.
+    pub fn denoises(&self) -> bool {
+        self.denoiser.is_some()
+    }
+
+    /// Returns the conditions that the figures depend on, each with its name.
+    pub(super) fn facts(&self) -> Vec<(String, String)> {
+        let [width, height] = self.plan.resolution;
+        vec![
+            ("version".to_owned(), env!("CARGO_PKG_VERSION").to_owned()),
+            ("program".to_owned(), program()),
+            ("pixels".to_owned(), format!("{width}x{height}")),
+            ("threads".to_owned(), self.plan.threads.to_string()),
+            ("runs per image".to_owned(), self.plan.repeats.to_string()),
+            ("denoiser".to_owned(), self.denoiser.clone().unwrap_or("none".to_owned())),
+        ]
+    }
+}

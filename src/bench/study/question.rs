@@ -1,0 +1,173 @@
+//! Questions about images, declared as data, and the judged images of their answers.
+
+use super::{Candidate, Cell, Counted, Errors, Reference};
+use base::film::Image;
+use base::stats::Stage;
+use std::rc::Rc;
+
+/// A question: which images, along which axis, by which errors, in which table and figures.
+#[derive(Clone, Copy)]
+pub struct Question<'q> {
+    /// Images of each scene, in the order of the table.
+    pub images: &'q [Candidate],
+    /// Quantity along which the figures are drawn.
+    pub axis: Axis,
+    /// References that errors are measured against.
+    pub error: Truth<'q>,
+    /// Returns the factor on the light of a scene by which its images are divided, from the scene's value.
+    pub brightness: fn(f64) -> f64,
+    /// Other images that images are compared with.
+    pub others: &'q [Candidate],
+    /// Returns the index of the other image that an image is compared with.
+    pub compared_with: fn(&Candidate) -> Option<usize>,
+    /// True if the images are kept in memory for the answer.
+    pub keeps_images: bool,
+    /// Columns of the table, a row per image. The first `names` columns hold text.
+    pub table: &'static [Column<Shot>],
+    pub names: usize,
+    /// Figures.
+    pub figures: &'static [Figure],
+}
+
+impl Question<'_> {
+    /// Default of all fields: no images, over seconds, with a reference of pixels.
+    pub const PLAIN: Question<'static> = Question {
+        images: &[],
+        axis: Axis::Seconds,
+        error: Truth::Pixels,
+        brightness: |_| 1.0,
+        others: &[],
+        compared_with: |_| None,
+        keeps_images: false,
+        table: &[],
+        names: 1,
+        figures: &[],
+    };
+}
+
+/// Quantity along which images differ.
+#[derive(Clone, Copy)]
+pub enum Axis {
+    /// Processor seconds of the images of one scene.
+    Seconds,
+    /// Value of a named quantity, which differs between scenes.
+    Value(&'static str),
+}
+
+/// References that errors are measured against.
+#[derive(Clone, Copy)]
+pub enum Truth<'q> {
+    /// No reference: only times are measured.
+    None,
+    /// Reference of the scene's pixels.
+    Pixels,
+    /// References of the scene's pixels, and of the eye samples of methods that keep these.
+    PixelsAndEyeSamples,
+    /// Reference of another scene with the same image but for a factor.
+    Given(&'q Rc<Reference>),
+}
+
+/// An image of a question with its time and errors.
+pub struct Shot {
+    /// Method and settings.
+    pub candidate: Candidate,
+    /// Value of the scene's quantity.
+    pub value: f64,
+    /// Processor seconds of loading the scene, if measured.
+    pub load: Option<f64>,
+    /// Counters and times.
+    pub counted: Counted,
+    /// The image, if the question keeps it.
+    pub image: Image,
+    /// Errors against the reference of pixels, averaged over seeds.
+    pub errors: Errors,
+    /// Errors of light: against the reference of pixels for methods that estimate whole pixels, and of eye samples for
+    /// methods that keep these. `None` without such a reference.
+    pub light: Option<Errors>,
+    /// Errors against the other image that this one is compared with.
+    pub compared: Option<Errors>,
+    /// Number of values that were not finite, over all seeds.
+    pub nonfinite: u64,
+}
+
+/// A column of a table of records: its name for programs, its name for people, and its figure.
+pub struct Column<R> {
+    /// Key in JSON; empty in a column for people alone.
+    pub key: &'static str,
+    /// Head of the column; empty in a column for programs alone.
+    pub head: &'static str,
+    /// Returns the figure of a record.
+    pub cell: fn(&Answer, &R) -> Cell,
+}
+
+impl<R> Column<R> {
+    /// Declares a column.
+    pub const fn new(key: &'static str, head: &'static str, cell: fn(&Answer, &R) -> Cell) -> Column<R> {
+        Column { key, head, cell }
+    }
+}
+
+/// A figure: an error of the images over the question's axis, in a curve per group of images.
+pub struct Figure {
+    /// Name of its vertical axis.
+    pub name: &'static str,
+    /// Returns the error of an image, if it is measured.
+    pub error: fn(&Shot) -> Option<f64>,
+    /// Curves.
+    pub curves: &'static [Curve],
+}
+
+/// A curve of a figure.
+pub struct Curve {
+    /// Name in the legend; empty to name each point instead.
+    pub name: &'static str,
+    /// CSS colour.
+    pub colour: &'static str,
+    /// True if a line joins the points.
+    pub joined: bool,
+    /// Returns true for the images of the curve.
+    pub holds: fn(&Candidate) -> bool,
+}
+
+/// Judged images of a question.
+pub struct Answer {
+    /// The question, without its images.
+    pub question: Question<'static>,
+    /// Name of the scene, the last of several.
+    pub scene: String,
+    /// Number of its triangles.
+    pub triangles: usize,
+    /// Reference that judges pixels.
+    pub reference: Option<Rc<Reference>>,
+    /// Reference that judges eye samples.
+    pub light_reference: Option<Reference>,
+    /// Images, scene by scene.
+    pub shots: Vec<Shot>,
+}
+
+impl Answer {
+    /// Creates the answer to a question before its images are rendered.
+    pub fn to(question: &Question) -> Answer {
+        let Question { axis, table, names, figures, .. } = *question;
+        Answer {
+            question: Question { axis, table, names, figures, ..Question::PLAIN },
+            scene: String::new(),
+            triangles: 0,
+            reference: None,
+            light_reference: None,
+            shots: Vec::new(),
+        }
+    }
+
+    /// Finds an image by its label.
+    pub fn find(&self, label: &str) -> Option<&Shot> {
+        self.shots.iter().find(|shot| shot.candidate.label == label)
+    }
+}
+
+impl Shot {
+    /// Returns the processor seconds of all stages.
+    pub fn seconds(&self) -> f64 {
+        self.counted.seconds(&Stage::ALL)
+    }
+}
