@@ -1,15 +1,22 @@
-//! Emission of photons, and the paths of photons through a scene.
+//! Photons: paths that begin at the emitters of a scene.
 //!
 //! - [`PhotonEmitter`] begins paths at an emitter; [`target`] and [`lit_sphere`] direct them at the scene;
-//! - [`plan`] holds the shares of paths by emitter, from their [`contributions`] to the points that the eye sees;
+//! - [`plan`] holds the shares of paths by emitter and their aims. [`planning`] makes a plan from pilot paths:
+//!   [`contributions`] re-weight emitters, [`openings`] aims paths from infinitely far;
 //! - [`tracing`] follows the paths of a plan; [`trace_photons`] traces as many as are wanted.
 
 mod contributions;
 mod emitter;
+mod entries;
+mod far;
 mod lit_sphere;
+mod openings;
+#[cfg(test)]
+mod openings_tests;
 mod photon;
 mod photons;
 mod plan;
+mod planning;
 mod sample;
 mod short_paths;
 mod target;

@@ -14,6 +14,8 @@ pub struct PhotonCounts {
     pub paths: u64,
     /// Number of closest-hit queries.
     pub rays: u64,
+    /// Number of unaimed photons that are as good as one of these photons; 0 if none is aimed.
+    pub gain: f32,
 }
 
 /// Light arriving at a surface.
@@ -47,9 +49,9 @@ pub struct PhotonHit<'a> {
 #[derive(Clone, Copy, Debug)]
 pub struct PhotonSettings<'a> {
     /// Approximate number of photons. Whole chunks of paths are traced, so there may be a few more. There are fewer if
-    /// few paths hit a surface.
+    /// few paths hit a surface, or if paths are aimed.
     pub photons: u32,
-    /// Points whose indirect light is wanted; if empty, emitters share paths in proportion to power.
+    /// Points whose indirect light is wanted; if empty, photons are not aimed.
     pub seen: &'a [SurfacePoint],
     /// Maximum number of edges of a path.
     pub max_edges: u32,

@@ -3,7 +3,7 @@
 //! Paths run in chunks of fixed size and are kept in order, so the photons are the same for any number of threads.
 //! Units: flux in watts, to be divided by the number of paths.
 
-use super::plan::EmitterPlan;
+use super::planning::plan;
 use super::tracing::{CHUNK, MAX_EDGES, PathTracer, PhotonChunk};
 use super::{PhotonCounts, PhotonEmitter, PhotonHit, PhotonSettings};
 use base::parallel::ShortRuns;
@@ -30,11 +30,11 @@ pub fn trace_photons<T: Send>(
         Some(emitter) if settings.photons > 0 && max_edges > 0 => emitter,
         _ => return (Vec::new(), PhotonCounts::default()),
     };
-    let plan = EmitterPlan::new(&emitter, settings.seen, settings.seed);
-    let mut counts = PhotonCounts::default();
-    let wanted = settings.photons as usize;
+    let planned = plan(&emitter, settings, max_edges);
+    let mut counts = PhotonCounts { paths: 0, rays: planned.rays, gain: planned.gain };
+    let wanted = planned.plan.photons;
     let seed = hash(settings.seed, 0x1d1d);
-    let tracer = PathTracer { emitter: &emitter, plan: &plan, seed, max_edges };
+    let tracer = PathTracer { emitter: &emitter, plan: &planned.plan, seed, max_edges };
     let max_chunks = (settings.photons.saturating_mul(PATHS_PER_PHOTON) / CHUNK).max(FIRST_WAVE);
     let mut photons: Vec<T> = Vec::with_capacity(wanted + wanted / 8);
     let mut chunks = 0;

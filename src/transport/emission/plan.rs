@@ -1,30 +1,59 @@
-//! Plan of photon tracing: shares of the paths by emitter.
+//! Plan of photon tracing: shares of the paths by emitter, aims of paths from infinitely far, and number of photons.
 
-use super::contributions;
+use super::openings::Openings;
 use super::{EmissionNumbers, EmissionSample, PhotonEmitter};
 use base::sampling::Sampler;
-use world::SurfacePoint;
 use world::light::DiscreteDistribution;
 
 /// Plan for the photons of a scene. Flux is unbiased for any plan.
-pub(super) struct EmitterPlan {
+pub(super) struct EmitterPlan<'w> {
     /// Emitters in proportion to their numbers of paths.
-    by_paths: DiscreteDistribution,
+    pub by_paths: DiscreteDistribution,
+    /// Share of the paths that begin infinitely far.
+    pub far_share: f32,
+    /// Aims of paths from infinitely far; `None` if these paths go anywhere.
+    pub aims: Option<Openings<'w>>,
+    /// Number of photons to trace.
+    pub photons: usize,
 }
 
-impl EmitterPlan {
-    /// Plans the photons for the indirect light of the points `seen`. Shares are in proportion to the contributions of
-    /// emitters to these points, or to power if that is nearly as good.
-    pub fn new(emitter: &PhotonEmitter, seen: &[SurfacePoint], seed: u32) -> EmitterPlan {
-        let by_power = &emitter.by_power;
-        let shares = contributions::shares(emitter.world, by_power, seen, seed);
-        EmitterPlan { by_paths: shares.unwrap_or_else(|| by_power.clone()) }
+impl<'w> EmitterPlan<'w> {
+    /// Creates the plan without re-weighting: paths in proportion to the flux of emitters.
+    pub fn by_power(emitter: &PhotonEmitter, photons: usize) -> EmitterPlan<'w> {
+        let by_paths = emitter.by_power.clone();
+        EmitterPlan { far_share: far_share(emitter, &by_paths), by_paths, aims: None, photons }
+    }
+
+    /// Creates the plan with aims. Emitters that are infinitely far have fewer paths, by the gain of the aims.
+    pub fn aimed(emitter: &PhotonEmitter, aims: Openings<'w>, photons: usize) -> EmitterPlan<'w> {
+        let weight = |index: usize| {
+            emitter.by_power.probability(index) / if emitter.is_far(index) { aims.gain } else { 1.0 }
+        };
+        let by_paths = DiscreteDistribution::new((0..emitter.by_power.len()).map(weight));
+        EmitterPlan { far_share: far_share(emitter, &by_paths), by_paths, aims: Some(aims), photons }
+    }
+
+    /// Returns the plan with other shares of the paths.
+    pub fn with_paths(self, emitter: &PhotonEmitter, by_paths: DiscreteDistribution) -> EmitterPlan<'w> {
+        EmitterPlan { far_share: far_share(emitter, &by_paths), by_paths, ..self }
     }
 
     /// Samples the beginning of a path; `None` if the emitter is dark there.
     pub fn sample(&self, emitter: &PhotonEmitter, sampler: &mut Sampler) -> Option<EmissionSample> {
         let (index, _) = self.by_paths.sample(sampler.next_1d());
         let numbers = EmissionNumbers::new(sampler);
-        emitter.begin(index, 1.0 / self.by_paths.probability(index), &numbers)
+        match self.aims.as_ref().filter(|_| emitter.is_far(index)) {
+            Some(aims) => {
+                let sample = aims.sample(&emitter.target, &numbers)?;
+                Some(EmissionSample { flux: sample.flux / self.far_share, ..sample })
+            }
+            None => emitter.begin(index, 1.0 / self.by_paths.probability(index), &numbers),
+        }
     }
+}
+
+/// Share of the paths that begin infinitely far.
+fn far_share(emitter: &PhotonEmitter, by_paths: &DiscreteDistribution) -> f32 {
+    let far = (0..by_paths.len()).filter(|index| emitter.is_far(*index));
+    far.map(|index| by_paths.probability(index)).sum()
 }

@@ -24,7 +24,7 @@ pub(super) struct EmissionTarget {
     /// Radius of a disc or sphere that covers all surfaces.
     pub radius: f32,
     /// Radius of the core, which receives half of the photons evenly. The other half has a density in proportion to the
-    /// inverse square of the distance. So surfaces around the camera have light however far other surfaces reach.
+    /// inverse square of the distance, so that surfaces around the camera have light however far other surfaces reach.
     /// In ordinary scenes the core is the whole target.
     pub core: f32,
 }
@@ -40,6 +40,25 @@ impl EmissionTarget {
             return Some(EmissionTarget { centre: Vec3::ZERO, radius: radius + centre.length(), core });
         }
         Some(EmissionTarget { centre, radius, core: radius })
+    }
+
+    /// Density by area, on a plane across the unit vector `towards` a light, with which [`EmissionTarget::ray`] samples
+    /// a line of light through `place`.
+    pub fn density(&self, place: Vec3, towards: Vec3) -> f32 {
+        let EmissionTarget { centre, radius, core } = *self;
+        let area = if core == radius {
+            PI * radius * radius
+        } else {
+            let distance_sq = (place - centre).cross(towards).length_squared();
+            let is_in_core = distance_sq < core * core;
+            if is_in_core { 2.0 * PI * core * core } else { 4.0 * PI * (radius / core).ln() * distance_sq }
+        };
+        area.recip()
+    }
+
+    /// Returns a point on the line from `place` `towards` a light that lies beyond all surfaces.
+    pub fn before(&self, place: Vec3, towards: Vec3) -> Vec3 {
+        place + towards * (1.01 * self.radius + (self.centre - place).dot(towards))
     }
 
     /// Returns a ray along `direction` through a point of the disc that faces it, and the inverse of the point's

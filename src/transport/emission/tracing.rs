@@ -35,7 +35,7 @@ pub(super) struct PhotonChunk<T> {
 #[derive(Clone, Copy)]
 pub(super) struct PathTracer<'a, 'w> {
     pub emitter: &'a PhotonEmitter<'w>,
-    pub plan: &'a EmitterPlan,
+    pub plan: &'a EmitterPlan<'w>,
     pub seed: u32,
     /// Maximum number of edges of a path.
     pub max_edges: u32,

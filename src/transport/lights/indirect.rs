@@ -3,7 +3,7 @@
 //! Paper: Keller, *Instant Radiosity*, 1997; Herzog et al. 2009, section 3: the first hit's reflected light
 //! is already indirect, and moderately glossy reflection counts as diffuse where light is deposited.
 //! Deviations: only weak lobes, as plastics have, count as diffuse. Metals have VPLs that radiate by their lobes. If
-//! the number of edges is limited, the receiver counts as seen directly. Behind mirrors and glass, light may use as
+//! the number of edges is limited, the receiver counts as seen directly: behind mirrors and glass, light may use as
 //! many further edges as the eye's path has.
 
 use super::{LightPassSettings, LobeProfile, Origin, Vpl, VplKind, VplSet};
@@ -63,7 +63,8 @@ impl PhotonVpls {
 }
 
 /// Makes about `settings.indirect` diffuse VPLs, and up to as many with lobes, for the indirect light of points `seen`.
-/// Whole chunks of paths are traced, so there may be a few more. There are fewer if few paths hit a surface.
+/// Whole chunks of paths are traced, so there may be a few more. There are fewer if few paths hit a surface, or if
+/// paths are aimed.
 pub fn indirect_vpls(
     world: &World,
     settings: &LightPassSettings,

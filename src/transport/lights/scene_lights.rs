@@ -48,6 +48,9 @@ impl Lights {
         let (vpls, rays) = (made.len() as u64, made.photons.rays);
         stats.count("VPLs/total", vpls);
         stats.count("VPLs/photon paths", made.photons.paths);
+        if made.photons.gain > 0.0 {
+            stats.add("VPLs/gain of aims", made.photons.gain.into());
+        }
         stats.count("Rays/closest hit", rays);
 
         control.begin(Stage::Tree, 0);

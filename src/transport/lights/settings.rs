@@ -16,6 +16,8 @@ settings! {
         ];
         /// Approximate number of virtual point lights where light is reflected, at least those of 1024 paths. 0
         /// computes direct light only.
+        ///
+        /// Photons are aimed at openings through which light of sky and sun enters. As few as a quarter are made then.
         indirect: u32 = 300_000 => [.named("vpls").at_least(0.0).scaled(&FACTORS).judged_by(JudgedBy::Light)];
         /// Seed of the VPLs.
         seed: u32 = 0;

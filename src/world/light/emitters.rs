@@ -81,9 +81,15 @@ impl Emitters {
         !self.areas.is_empty() || self.environment.is_some()
     }
 
-    /// Returns true if there are several emitters, some of which may contribute more to the image than others.
+    /// Returns true if there is light from infinitely far.
+    pub fn have_far(&self) -> bool {
+        let is_directional = |light: &DeltaLight| matches!(light, DeltaLight::Directional { .. });
+        self.environment.is_some() || self.deltas.iter().any(is_directional)
+    }
+
+    /// Returns true if photons may contribute unevenly to the image. Light from infinitely far or several emitters do.
     pub fn may_be_uneven(&self) -> bool {
-        self.areas.len() + self.deltas.len() + usize::from(self.environment.is_some()) > 1
+        self.areas.len() + self.deltas.len() + usize::from(self.environment.is_some()) > 1 || self.have_far()
     }
 
     /// Returns true if there are enough emitters to learn their visibility.
