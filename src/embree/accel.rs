@@ -30,8 +30,6 @@ pub enum BuildQuality {
     Medium,
     /// Quality `Medium` with spatial splits.
     High,
-    /// Quality `Medium` in less memory.
-    Compact,
     /// Quality `Medium`, with traversal that rounds outwards.
     Robust,
 }
@@ -42,7 +40,6 @@ impl BuildQuality {
             BuildQuality::Low => (sys::RTC_BUILD_QUALITY_LOW, sys::RTC_SCENE_FLAG_NONE),
             BuildQuality::Medium => (sys::RTC_BUILD_QUALITY_MEDIUM, sys::RTC_SCENE_FLAG_NONE),
             BuildQuality::High => (sys::RTC_BUILD_QUALITY_HIGH, sys::RTC_SCENE_FLAG_NONE),
-            BuildQuality::Compact => (sys::RTC_BUILD_QUALITY_MEDIUM, sys::RTC_SCENE_FLAG_COMPACT),
             BuildQuality::Robust => (sys::RTC_BUILD_QUALITY_MEDIUM, sys::RTC_SCENE_FLAG_ROBUST),
         }
     }
