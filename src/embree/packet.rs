@@ -159,6 +159,16 @@ impl Hits16 {
         }
     }
 
+    /// Copies a lane of other hits into a lane.
+    #[inline]
+    pub fn copy_lane(&mut self, to: usize, hits: &Hits16, from: usize) {
+        self.t[to] = hits.t[from];
+        self.u[to] = hits.u[from];
+        self.v[to] = hits.v[from];
+        self.geometry[to] = hits.geometry[from];
+        self.primitive[to] = hits.primitive[from];
+    }
+
     /// Copies lane `from` into the lanes of `to`.
     #[inline]
     pub fn repeat(&mut self, from: usize, to: u16) {

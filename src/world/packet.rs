@@ -2,8 +2,8 @@
 
 use super::triangle::position;
 use super::{Surface, World};
-use crate::material::Bsdfs16;
-use base::math::{Cone, F32x16, Frame, LANES, U32x16, Vec2x16, Vec3x16, lanes_in};
+use crate::material::{Bsdf, Bsdfs16, MeanBsdf};
+use base::math::{Cone, F32x16, Frame, LANES, U32x16, Vec2x16, Vec3x16, lanes_in, mask_of};
 use embree::Hits16;
 use glam::Vec2;
 
@@ -122,13 +122,47 @@ impl World {
     /// Returns the BSDFs of the surfaces at their texture coordinates, seen from `wo` in their shading frames.
     #[inline]
     pub fn bsdfs(&self, s: &Surfaces16, wo: Vec3x16) -> Bsdfs16<'_> {
-        let at = self.textured(s);
+        let at = self.textured(s, u16::MAX);
         Bsdfs16::new(wo, |i| {
             let mesh = &self.scene.meshes[s.mesh[i] as usize];
             let uv = || at[i].unwrap_or_else(|| self.coordinates(s, i));
             let covered = || self.covered(s.mesh[i], s.triangle[i], s.footprint.get(i));
             self.materials.at_coordinates(mesh.material, uv, covered)
         })
+    }
+
+    /// Returns the lanes whose materials scatter light by densities alone: by no mirrors, no glass and no gaps.
+    #[inline]
+    pub fn with_densities_alone(&self, mesh: &U32x16) -> u16 {
+        let alone =
+            |mesh: u32| self.materials.has_only_densities(self.scene.meshes[mesh as usize].material);
+        if *mesh == [mesh[0]; LANES] {
+            return if alone(mesh[0]) { u16::MAX } else { 0 };
+        }
+        mask_of(&mesh.map(|mesh| u32::from(alone(mesh))))
+    }
+
+    /// Returns the mean of the materials of some lanes, all of one material, and the lanes that it stands for. Lanes
+    /// whose lobes differ from those of the first lane are left out.
+    pub fn mean_bsdf(&self, s: &Surfaces16, lanes: u16) -> (Bsdf<'_>, u16) {
+        let first = lanes.trailing_zeros() as usize;
+        let id = self.scene.meshes[s.mesh[first] as usize].material;
+        if let Some(bsdf) = self.materials.constant(id) {
+            return (bsdf, lanes);
+        }
+        let at = self.textured(s, lanes);
+        let bsdf = |i: usize| {
+            let uv = || at[i].unwrap_or_else(|| self.coordinates(s, i));
+            let covered = || self.covered(s.mesh[i], s.triangle[i], s.footprint.get(i));
+            self.materials.at_coordinates(id, uv, covered)
+        };
+        let (mut mean, mut taken) = (MeanBsdf::new(bsdf(first)), 1 << first);
+        for lane in lanes_in(lanes & !taken) {
+            if mean.add(&bsdf(lane)) {
+                taken |= 1 << lane;
+            }
+        }
+        (mean.mean(), taken)
     }
 
     /// Returns the texture coordinates in a lane.
@@ -138,12 +172,12 @@ impl World {
         self.scene.meshes[s.mesh[lane] as usize].uv(vertices, s.barycentric.get(lane))
     }
 
-    /// Returns the texture coordinates of the surfaces that are textured. It also reads some of their texels, so that
-    /// the lanes wait for memory together.
+    /// Returns the texture coordinates of the surfaces in `lanes` that are textured. It also reads some of their texels,
+    /// so that the lanes wait for memory together.
     #[inline]
-    fn textured(&self, s: &Surfaces16) -> [Option<Vec2>; LANES] {
+    fn textured(&self, s: &Surfaces16, lanes: u16) -> [Option<Vec2>; LANES] {
         let (mut at, mut squares) = ([None; LANES], [None; LANES]);
-        for i in 0..LANES {
+        for i in lanes_in(lanes) {
             let mesh = &self.scene.meshes[s.mesh[i] as usize];
             if let Some(texture) = self.materials.texture(mesh.material) {
                 let uv = self.coordinates(s, i);

@@ -139,6 +139,12 @@ impl World {
         }
     }
 
+    /// Returns true if some shading frames are turned by reliefs or towards the axes of anisotropic materials.
+    #[inline]
+    pub fn turns_frames(&self) -> bool {
+        self.reliefs.is_some()
+    }
+
     /// Returns true if some textures are averaged over footprints.
     #[inline]
     pub fn filters_textures(&self) -> bool {

@@ -36,11 +36,17 @@ impl CausticLookups {
         CausticLookups { samples: samples.max(1), looking, found: 0.0, square: 0.0 }
     }
 
+    /// Returns true if a path does lookups.
+    #[inline]
+    pub fn looks_up(&self, path: u32) -> bool {
+        path % self.samples < self.looking
+    }
+
     /// Returns the photons' light that the first hit of a path reflects, scaled for the paths without lookups; 0 if
     /// the path itself does none.
     #[inline]
     pub fn reflected(&mut self, caustics: &Caustics, end: &ChainEnd) -> Rgb {
-        if end.path % self.samples >= self.looking {
+        if !self.looks_up(end.path) {
             return Rgb::ZERO;
         }
         let found = caustics.reflected(&end.surface, &end.bsdf, end.out, end.distance, end.depth);

@@ -19,6 +19,8 @@ pub(super) struct FirstHits<'a, 'w> {
     pub lookups: CausticLookups,
     /// Distance between neighbouring points over the distance from the eye, on surfaces that face it.
     pub spacing_by_distance: f32,
+    /// True if first hits are shaded in groups.
+    pub in_groups: bool,
     pub edges: ScatteredEdges,
     pub light_samples: LightSamples,
     pub found: Vec<MergedPoint<'w>>,
@@ -56,6 +58,15 @@ impl<'w> PathPolicy<'w> for FirstHits<'_, 'w> {
 
     fn share_of_paths(&self, radiance: Rgb, distance: f32) -> f32 {
         self.caustics.map_or(1.0, |caustics| caustics.share_of_paths(radiance, distance))
+    }
+
+    fn group_spacing(&self) -> Option<f32> {
+        self.in_groups.then_some(self.spacing_by_distance)
+    }
+
+    #[inline]
+    fn looks_up(&self, path: u32) -> bool {
+        self.caustics.is_some() && self.lookups.looks_up(path)
     }
 
     fn sees(&self) -> bool {

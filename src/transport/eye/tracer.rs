@@ -8,7 +8,7 @@ use super::merge::MergedPoint;
 use super::{EyeCounts, EyeSettings, FeatureSettings, guide};
 use crate::caustics::Caustics;
 use crate::paths::{Batch, Estimand, LightSamples, PathStart, RayCounts, ScatteredEdges, start};
-use base::math::{Rgb, luminance};
+use base::math::{LANES, Rgb, luminance};
 use base::progress::Control;
 use std::ops::Range;
 use world::World;
@@ -17,6 +17,9 @@ use world::view::View;
 
 /// Approximate number of paths traced together: enough to fill packets, few enough for the second-level cache.
 pub(super) const BATCH: u32 = 1024;
+
+/// Minimum number of samples of a pixel that are shaded in groups.
+const MIN_GROUPED: usize = 4;
 
 /// Share of a pixel's edge that counts as the distance to the next point: that of four eye samples per pixel, for
 /// which the footprint sizes of records are tuned.
@@ -109,6 +112,7 @@ impl<'a, 'w> Tracer<'a, 'w> {
             caustics,
             lookups: CausticLookups::default(),
             spacing_by_distance,
+            in_groups: false,
             edges,
             light_samples,
             found: Vec::new(),
@@ -153,10 +157,18 @@ impl<'a, 'w> Tracer<'a, 'w> {
             for first in samples.clone().step_by(BATCH as usize) {
                 let part = first..first.saturating_add(BATCH).min(samples.end);
                 let n = part.len();
-                let paths = pixels.iter().flat_map(|pixel| {
+                let mut paths = pixels.iter().flat_map(|pixel| {
                     part.clone().map(move |sample| PathStart { pixel: *pixel, sample, seed })
                 });
-                start(batch, paths, self.world, self.view, estimand, self.settings.spp);
+                ends.in_groups = n >= MIN_GROUPED;
+                let add = |batch: &mut Batch, paths: &mut dyn Iterator<Item = PathStart>| {
+                    start(batch, paths, self.world, self.view, estimand, self.settings.spp);
+                };
+                match n.is_multiple_of(LANES) || LANES.is_multiple_of(n) {
+                    true => add(batch, &mut paths),
+                    // A pixel's samples share packets in one way, whatever pixels are traced with it.
+                    false => (0..pixels.len()).for_each(|_| add(batch, &mut paths.by_ref().take(n))),
+                }
                 ends.lookups = CausticLookups::new(n as u32);
                 ends.found.clear();
                 ends.order.clear();

@@ -8,21 +8,25 @@
 //! in the same order, so that images do not depend on threads.
 
 use super::counts::RayCounts;
+use super::grouped::GroupedVertices;
+use super::groups::{FirstHits16, collect};
 use super::packet::{Packet, PathStage, Shadows};
 use super::policy::PathPolicy;
 use base::math::{Cone, LANES, Rgb, Vec3x16, first_lanes, lanes_in};
 use base::sampling::Samplers16;
 use embree::{Hits16, Ray, Rays16};
 use std::mem;
-use world::World;
+use world::{Surfaces16, World};
 use world::light::Receivers16;
 
 /// Paths in flight, and their contributions so far.
 #[derive(Default)]
 pub struct Batch {
     packets: Vec<Packet>,
-    /// Number of paths in the packets. They fill the lanes from the first on.
+    /// Number of paths in the packets. Behind the first edge they fill all lanes from the first on.
     count: usize,
+    /// Lanes of each packet that hold paths at their first edge.
+    first: Vec<u16>,
     shadows: Shadows,
     /// Edges that can find only the environment, until they fill a packet, and their number.
     outward: (Packet, usize),
@@ -30,10 +34,10 @@ pub struct Batch {
 }
 
 impl Batch {
-    /// Adds up to sixteen paths. Only the last call before [`Batch::trace`] may add fewer. Their results follow those
-    /// of the call before.
+    /// Adds up to sixteen paths. Their results follow those of the call before.
     pub fn push(&mut self, rays: Rays16, samplers: Samplers16, cone: Cone, count: usize) {
         self.packets.push(Packet::new(rays, samplers, cone, self.count as u32));
+        self.first.push(first_lanes(count));
         self.count += count;
         self.radiance.resize(self.count, Rgb::ZERO);
     }
@@ -52,10 +56,16 @@ impl Batch {
         }
         let mut depth = 1;
         while self.count > 0 {
-            self.extend(world, [depth, max_depth], policy, counts);
+            match policy.group_spacing() {
+                Some(spacing) if depth == 1 => {
+                    self.extend_in_groups(world, max_depth, spacing, policy, counts);
+                }
+                _ => self.extend(world, [depth, max_depth], policy, counts),
+            }
             depth += 1;
         }
         self.packets.clear();
+        self.first.clear();
         self.radiance.drain(..)
     }
 
@@ -68,50 +78,168 @@ impl Batch {
         counts: &mut RayCounts,
     ) {
         counts.rays += self.count as u64;
-        let mut kept = 0;
-        // Neighbours' rays to lamps are nearly parallel, rays to a sky are not.
-        let coherent = depth == 1 && world.emitters.environment.is_none();
-        let mut hits = Hits16::default();
-        for index in 0..self.count.div_ceil(LANES) {
+        let (mut kept, mut hits) = (0, Hits16::default());
+        let packets = if depth == 1 { self.packets.len() } else { self.count.div_ceil(LANES) };
+        for index in 0..packets {
             let mut packet = self.packets[index].clone();
-            let valid = first_lanes(self.count - index * LANES);
-            let found = world.accel.closest_hit16(&packet.rays, valid, depth == 1, &mut hits);
-            if !(depth == 1 && world.scene.hides_emitters) {
-                self.escape(world, &packet, valid & !found, policy);
-            }
+            let valid = if depth == 1 { self.first[index] } else { first_lanes(self.count - index * LANES) };
+            let found = self.hit(world, &packet, valid, depth, policy, &mut hits);
             if found == 0 {
                 continue;
             }
-            hits.repeat(found.trailing_zeros() as usize, !found);
-            let mut surfaces = world.surfaces(&hits);
-            world.cover(&mut surfaces, &packet.rays.directions(), found, |lane| packet.cones[lane]);
+            let surfaces = covered(world, &packet, &mut hits, found);
             packet.add_emitted(world, &surfaces, found, policy, &mut self.radiance);
-            let mut followed = if R::STOPS_AT_DIFFUSE { found & packet.followed() } else { found };
-            if R::STOPS_AT_DIFFUSE {
-                followed &= !packet.at(PathStage::Scattered) | world.specular.lanes(&surfaces.mesh);
-            }
-            followed &= packet.may_go_on(depth, max_depth);
-            if followed != 0 {
-                let arrives = |segment: Option<&Ray>, radiance: Rgb, slot: u32| {
-                    let Some(segment) = segment else {
-                        self.radiance[slot as usize] += radiance;
-                        return;
-                    };
-                    if self.shadows.push(segment, radiance, slot) {
-                        self.shadows.trace(world, coherent, &mut self.radiance, counts);
-                    }
-                };
-                let mut going_on = packet.scatter(world, &surfaces, depth, followed, policy, arrives);
-                if R::STOPS_AT_DIFFUSE {
-                    let blind = policy.edges().blind;
-                    let (kept, outward) = split_edges(world, &mut packet, going_on, blind, depth);
-                    going_on = kept;
-                    self.add_outward(world, &packet, outward, policy, counts);
-                }
-                self.keep(&packet, going_on, &mut kept);
-            }
+            let step = Step { depth, max_depth, kept: &mut kept };
+            self.scatter(world, &mut packet, &surfaces, found, step, policy, counts);
         }
-        self.shadows.trace(world, coherent, &mut self.radiance, counts);
+        self.finish(world, kept, depth, policy, counts);
+    }
+
+    /// Traces the first edges and shades their ends in groups. Surfaces with mirrors, glass or gaps are shaded one by
+    /// one, and gathered beforehand so that packets are full.
+    fn extend_in_groups<'w, R: PathPolicy<'w>>(
+        &mut self,
+        world: &'w World,
+        max_depth: u32,
+        spacing: f32,
+        policy: &mut R,
+        counts: &mut RayCounts,
+    ) {
+        counts.rays += self.count as u64;
+        let coherent = are_coherent(world, 1);
+        let (mut kept, mut hits) = (0, Hits16::default());
+        let (mut single, mut groups) = (SingleHits::default(), Vec::with_capacity(LANES));
+        for index in 0..self.packets.len() {
+            let mut packet = self.packets[index].clone();
+            let found = self.hit(world, &packet, self.first[index], 1, policy, &mut hits);
+            if found == 0 {
+                continue;
+            }
+            let surfaces = covered(world, &packet, &mut hits, found);
+            packet.add_emitted(world, &surfaces, found, policy, &mut self.radiance);
+            if max_depth <= 1 {
+                continue;
+            }
+            let grouped = found & world.with_densities_alone(&surfaces.mesh);
+            for lane in lanes_in(found & !grouped) {
+                if single.push(&packet, &hits, lane) {
+                    let step = Step { depth: 1, max_depth, kept: &mut kept };
+                    self.scatter_single(world, &mut single, step, policy, counts);
+                }
+            }
+            let directions = packet.rays.directions();
+            let (surfaces, pixel) = (&surfaces, &packet.samplers.seed);
+            let first = FirstHits16 { surfaces, directions: &directions, pixel, spacing };
+            collect(world, &first, grouped, &mut groups);
+            let radiance = &mut self.radiance[..];
+            let groups = &mut groups[..];
+            let going_on = GroupedVertices { world, surfaces, groups, coherent, radiance, counts: &mut *counts }
+                .scatter(&mut packet, policy);
+            let step = Step { depth: 1, max_depth, kept: &mut kept };
+            self.go_on(world, &mut packet, going_on, step, policy, counts);
+        }
+        let step = Step { depth: 1, max_depth, kept: &mut kept };
+        self.scatter_single(world, &mut single, step, policy, counts);
+        self.finish(world, kept, 1, policy, counts);
+    }
+
+    /// Traces the edges of a packet and adds the light of those that hit nothing. Returns the lanes with hits.
+    fn hit<'w, R: PathPolicy<'w>>(
+        &mut self,
+        world: &World,
+        packet: &Packet,
+        valid: u16,
+        depth: u32,
+        policy: &R,
+        hits: &mut Hits16,
+    ) -> u16 {
+        let found = world.accel.closest_hit16(&packet.rays, valid, depth == 1, hits);
+        if !(depth == 1 && world.scene.hides_emitters) {
+            self.escape(world, packet, valid & !found, policy);
+        }
+        found
+    }
+
+    /// Shades hits that were gathered.
+    fn scatter_single<'w, R: PathPolicy<'w>>(
+        &mut self,
+        world: &'w World,
+        single: &mut SingleHits,
+        step: Step,
+        policy: &mut R,
+        counts: &mut RayCounts,
+    ) {
+        let found = first_lanes(mem::take(&mut single.count));
+        if found != 0 {
+            let surfaces = covered(world, &single.packet, &mut single.hits, found);
+            self.scatter(world, &mut single.packet, &surfaces, found, step, policy, counts);
+        }
+    }
+
+    /// Shades the hits of a packet one by one and stores the paths that continue.
+    #[expect(clippy::too_many_arguments)]
+    fn scatter<'w, R: PathPolicy<'w>>(
+        &mut self,
+        world: &'w World,
+        packet: &mut Packet,
+        surfaces: &Surfaces16,
+        found: u16,
+        step: Step,
+        policy: &mut R,
+        counts: &mut RayCounts,
+    ) {
+        let mut followed = if R::STOPS_AT_DIFFUSE { found & packet.followed() } else { found };
+        if R::STOPS_AT_DIFFUSE {
+            followed &= !packet.at(PathStage::Scattered) | world.specular.lanes(&surfaces.mesh);
+        }
+        followed &= packet.may_go_on(step.depth, step.max_depth);
+        if followed == 0 {
+            return;
+        }
+        let coherent = are_coherent(world, step.depth);
+        let arrives = |segment: Option<&Ray>, radiance: Rgb, slot: u32| {
+            let Some(segment) = segment else {
+                self.radiance[slot as usize] += radiance;
+                return;
+            };
+            if self.shadows.push(segment, radiance, slot) {
+                self.shadows.trace(world, coherent, &mut self.radiance, counts);
+            }
+        };
+        let going_on = packet.scatter(world, surfaces, step.depth, followed, policy, arrives);
+        self.go_on(world, packet, going_on, step, policy, counts);
+    }
+
+    /// Stores the paths of a packet that continue. Edges that can find only emitters are dropped or tested for
+    /// occlusion alone.
+    fn go_on<'w, R: PathPolicy<'w>>(
+        &mut self,
+        world: &World,
+        packet: &mut Packet,
+        mut going_on: u16,
+        step: Step,
+        policy: &R,
+        counts: &mut RayCounts,
+    ) {
+        if R::STOPS_AT_DIFFUSE {
+            let blind = policy.edges().blind;
+            let (traced, outward) = split_edges(world, packet, going_on, blind, step.depth);
+            going_on = traced;
+            self.add_outward(world, packet, outward, policy, counts);
+        }
+        self.keep(packet, going_on, step.kept);
+    }
+
+    /// Traces the rays that still wait for a full packet, after `kept` paths were stored.
+    fn finish<'w, R: PathPolicy<'w>>(
+        &mut self,
+        world: &World,
+        kept: usize,
+        depth: u32,
+        policy: &R,
+        counts: &mut RayCounts,
+    ) {
+        self.shadows.trace(world, are_coherent(world, depth), &mut self.radiance, counts);
         self.trace_outward(world, policy, counts);
         self.count = kept;
     }
@@ -185,6 +313,45 @@ impl Batch {
                 packet.emission_throughput.get(lane) * radiance * weight;
         }
     }
+}
+
+/// Hits that are shaded one by one, gathered from several packets.
+#[derive(Default)]
+struct SingleHits {
+    packet: Packet,
+    hits: Hits16,
+    count: usize,
+}
+
+impl SingleHits {
+    /// Adds a lane of a packet. Returns true if all lanes are taken.
+    fn push(&mut self, packet: &Packet, hits: &Hits16, lane: usize) -> bool {
+        self.packet.copy_lane(self.count, packet, lane);
+        self.hits.copy_lane(self.count, hits, lane);
+        self.count += 1;
+        self.count == LANES
+    }
+}
+
+/// Number of the edge that is traced, and of paths stored so far behind it.
+struct Step<'a> {
+    depth: u32,
+    max_depth: u32,
+    kept: &'a mut usize,
+}
+
+/// Returns true if the shadow rays of a packet at the end of edge `depth` are about parallel: neighbours' rays to lamps
+/// are, rays to a sky are not.
+fn are_coherent(world: &World, depth: u32) -> bool {
+    depth == 1 && world.emitters.environment.is_none()
+}
+
+/// Returns the surfaces that a packet has hit in the lanes of `found`, with the footprints of its rays.
+fn covered(world: &World, packet: &Packet, hits: &mut Hits16, found: u16) -> Surfaces16 {
+    hits.repeat(found.trailing_zeros() as usize, !found);
+    let mut surfaces = world.surfaces(hits);
+    world.cover(&mut surfaces, &packet.rays.directions(), found, |lane| packet.cones[lane]);
+    surfaces
 }
 
 /// Returns, among the paths that continue, those whose edges are to be traced, and those whose edges can find only the

@@ -5,7 +5,7 @@
 
 use base::math::Frame;
 use glam::{Vec2, Vec3};
-use world::material::{BsdfSamples16, Bsdfs16};
+use world::material::{Bsdf, BsdfSamples16};
 use world::{Faces, World};
 
 /// Lanes with guided directions, and the share of directions aimed at mirrors and glass.
@@ -21,8 +21,9 @@ pub(super) struct LaneVertex<'a, 'w> {
     /// Shading normal on the side of arrival.
     pub normal: Vec3,
     pub frame: Frame,
-    /// BSDFs of the packet.
-    pub bsdfs: &'a Bsdfs16<'w>,
+    pub bsdf: &'a Bsdf<'w>,
+    /// Direction from which it is seen, in the frame.
+    pub wo: Vec3,
 }
 
 impl Guided {
@@ -48,14 +49,14 @@ impl Guided {
         u: Vec2,
         samples: &mut BsdfSamples16,
     ) {
-        let LaneVertex { lane, position, normal, ref frame, bsdfs } = *vertex;
+        let LaneVertex { lane, position, normal, ref frame, bsdf, wo } = *vertex;
         let faces = world.specular.faces(position, normal);
         let towards = match u_choice < self.share {
             true => faces.towards(u_choice / self.share, u),
             false => None,
         };
         let wi = towards.map_or(samples.wi.get(lane), |direction| frame.to_local(direction));
-        let (value, pdf) = bsdfs.lane(lane).eval_pdf(bsdfs.wo(lane), wi);
+        let (value, pdf) = bsdf.eval_pdf(wo, wi);
         let pdf = self.mixed(&faces, frame.to_world(wi), pdf);
         samples.wi.set(lane, wi);
         samples.weight.set(lane, value * (wi.z.abs() / pdf));

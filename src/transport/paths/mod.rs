@@ -6,6 +6,8 @@
 mod batch;
 mod counts;
 mod estimand;
+mod grouped;
+mod groups;
 mod guided;
 mod packet;
 mod policy;

@@ -96,6 +96,17 @@ pub trait PathPolicy<'w> {
         true
     }
 
+    /// Returns the distance between neighbouring points over the distance from the eye, if first hits are to be shaded
+    /// in groups; [`PathPolicy::see`] and [`PathPolicy::end`] are then called once per group.
+    fn group_spacing(&self) -> Option<f32> {
+        None
+    }
+
+    /// Returns true if [`PathPolicy::reflected`] is to be called for a path of a group.
+    fn looks_up(&self, _path: u32) -> bool {
+        false
+    }
+
     /// Returns true if [`PathPolicy::see`] is to be called.
     fn sees(&self) -> bool {
         false

@@ -17,7 +17,7 @@ use base::math::{Cone, F32x16, LANES, Rgb, Vec2x16, Vec3x16, lanes_in, mask_of};
 use base::sampling::{hash, power_heuristic};
 use embree::{Ray, Rays16};
 use glam::Vec3;
-use world::light::Receivers16;
+use world::light::{DirectSamples16, Receivers16};
 use world::material::{BsdfSamples16, Bsdfs16, LobeSet};
 use world::shadow;
 use world::{Surfaces16, World, beyond};
@@ -55,8 +55,38 @@ struct LightStep<'a, 'w> {
 }
 
 /// Returns the index of the first pair of random numbers of vertex `depth`.
-fn first_pair(depth: u32) -> u32 {
+pub(super) fn first_pair(depth: u32) -> u32 {
     PAIRS_BEFORE + 1 + (depth - 1).wrapping_mul(PAIRS_PER_VERTEX)
+}
+
+/// Continues the cone around an edge of length `t`, whose next direction has the density `pdf`.
+#[inline]
+pub(super) fn continue_cone(cone: &mut Cone, pdf: f32, t: f32) {
+    match pdf > MIN_DENSITY_OF_IMAGES {
+        true => cone.width = cone.width_at(t),
+        false => *cone = Cone::default(),
+    }
+}
+
+/// Returns the hash of a chain continued by a surface of `mesh`, on the same side or by a delta lobe.
+#[inline]
+pub(super) fn next_class(path_class: u32, [same_side, by_delta]: [bool; 2], mesh: u32) -> u32 {
+    let side = u32::from(same_side) + 2 * u32::from(by_delta);
+    hash(path_class ^ side.wrapping_mul(0x9e37_79b9), 1 + mesh)
+}
+
+/// Returns the segments from surfaces to sampled lights.
+#[inline]
+pub(super) fn segments(surfaces: &Surfaces16, lights: &DirectSamples16) -> Rays16 {
+    let mut segments = Rays16::default();
+    for i in 0..LANES {
+        let (position, normal) = (surfaces.position.get(i), surfaces.normal.get(i));
+        let (direction, distance) = (lights.direction.get(i), lights.distance[i]);
+        let near = shadow::segment(position, normal, position + direction * distance, lights.normal.get(i));
+        let far = shadow::ray_from(position, normal, direction);
+        segments.set(i, &if distance < f32::INFINITY { near } else { far });
+    }
+    segments
 }
 
 impl Packet {
@@ -176,7 +206,8 @@ impl Packet {
         let mut samples = bsdfs.sample(&choices.y, &places, found);
         for lane in lanes_in(guided.lanes) {
             let (position, normal) = (surfaces.position.get(lane), self.normal.get(lane));
-            let vertex = LaneVertex { lane, position, normal, frame: surfaces.frame(lane), bsdfs: &bsdfs };
+            let (frame, bsdf, wo) = (surfaces.frame(lane), bsdfs.lane(lane), bsdfs.wo(lane));
+            let vertex = LaneVertex { lane, position, normal, frame, bsdf, wo };
             guided.turn(world, &vertex, choices.y[lane], places.get(lane), &mut samples);
         }
         let roulette = if depth >= ROULETTE_DEPTH { self.samplers.number(pair + 3) } else { [0.0; LANES] };
@@ -220,11 +251,7 @@ impl Packet {
         }
         if world.filters_textures() {
             for i in lanes_in(found) {
-                let cone = &mut self.cones[i];
-                match samples.pdf[i] > MIN_DENSITY_OF_IMAGES {
-                    true => cone.width = cone.width_at(surfaces.t[i]),
-                    false => *cone = Cone::default(),
-                }
+                continue_cone(&mut self.cones[i], samples.pdf[i], surfaces.t[i]);
             }
         }
         for i in 0..LANES {
@@ -354,9 +381,9 @@ impl Packet {
         for lane in lanes_in((delta | sharp) & !samples.straight() & self.at(PathStage::Chain)) {
             self.distance[lane] += surfaces.t[lane];
             let same_side = (bsdfs.wo(lane).z > 0.0) == (samples.wi.z[lane] > 0.0);
-            let side = u32::from(same_side) + 2 * u32::from((delta >> lane) & 1 != 0);
+            let by_delta = (delta >> lane) & 1 != 0;
             self.path_class[lane] =
-                hash(self.path_class[lane] ^ side.wrapping_mul(0x9e37_79b9), 1 + surfaces.mesh[lane]);
+                next_class(self.path_class[lane], [same_side, by_delta], surfaces.mesh[lane]);
         }
     }
 
@@ -381,7 +408,7 @@ impl Packet {
             let (x, n) = (surfaces.position.get(i), self.normal.get(i));
             pdf[i] = guided.density(world, x, n, lights.direction.get(i), pdf[i]);
         }
-        let (mut radiance, mut segments, mut scattered) = (Vec3x16::default(), Rays16::default(), [0; LANES]);
+        let (mut radiance, mut scattered) = (Vec3x16::default(), [0; LANES]);
         for i in 0..LANES {
             let only = (lights.delta[i] != 0) | ((alone >> i) & 1 != 0);
             let light_pdf = self.light_samples[i] * lights.pdf[i];
@@ -391,14 +418,7 @@ impl Packet {
             radiance.set(i, self.throughput.get(i) * value * lights.radiance.get(i) * factor);
             scattered[i] = u32::from((value.x != 0.0) | (value.y != 0.0) | (value.z != 0.0));
         }
-        for i in 0..LANES {
-            let (position, normal) = (surfaces.position.get(i), surfaces.normal.get(i));
-            let (direction, distance) = (lights.direction.get(i), lights.distance[i]);
-            let near =
-                shadow::segment(position, normal, position + direction * distance, lights.normal.get(i));
-            let far = shadow::ray_from(position, normal, direction);
-            segments.set(i, &if distance < f32::INFINITY { near } else { far });
-        }
+        let segments = segments(surfaces, &lights);
         for i in lanes_in(wanted & mask_of(&scattered)) {
             arrives(Some(&segments.get(i)), radiance.get(i), self.slot[i]);
         }

@@ -27,6 +27,7 @@ pub use distribution::DiscreteDistribution;
 pub use emitters::Emitters;
 pub use environment::{EnvironmentLight, EnvironmentSample, LearnedSky, SkyObservations};
 pub use learned::Learned;
+pub use packet::DirectSamples16;
 pub use receivers::Receivers16;
 pub use regions::Regions;
 pub use tree::{EmitterObservations, LearnedEmitters};

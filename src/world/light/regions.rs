@@ -79,12 +79,31 @@ impl Regions {
         }
     }
 
-    /// Returns the regions of sixteen points. All lanes descend to the depth of the deepest leaf, so that they wait for
-    /// memory together.
+    /// Returns the regions of sixteen points. Points that are close together descend together; then all lanes descend to
+    /// the depth of the deepest leaf, so that they wait for memory together.
     #[inline]
     pub fn find(&self, x: &Vec3x16) -> [usize; LANES] {
-        let (mut node, rows) = ([0; LANES], x.rows());
-        for _ in 0..self.depth {
+        let rows = x.rows();
+        let bounds = rows.map(|row| {
+            row.iter().fold([f32::INFINITY, f32::NEG_INFINITY], |[low, high], x| [low.min(*x), high.max(*x)])
+        });
+        let (mut first, mut passed) = (0, 0);
+        loop {
+            let RegionNode { plane, word } = self.nodes[first];
+            let axis = word & LEAF;
+            if axis == LEAF {
+                return [(word >> 2) as usize; LANES];
+            }
+            let [low, high] = bounds[axis as usize];
+            match high < plane {
+                true => first += 1,
+                false if low >= plane => first = (word >> 2) as usize,
+                false => break,
+            }
+            passed += 1;
+        }
+        let mut node = [first; LANES];
+        for _ in passed..self.depth {
             for lane in 0..LANES {
                 let RegionNode { plane, word } = self.nodes[node[lane]];
                 let axis = word & LEAF;
@@ -97,5 +116,32 @@ impl Regions {
             }
         }
         node.map(|node| (self.nodes[node].word >> 2) as usize)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use base::sampling::owen_sobol_2d;
+
+    #[test]
+    fn sixteen_points_have_the_regions_of_single_points_wherever_they_are() {
+        let point = |i: u32, size: f32| {
+            let (a, b) = (owen_sobol_2d(i, 1), owen_sobol_2d(i, 2));
+            Vec3::new(a.x, a.y, b.x) * size
+        };
+        let points: Vec<Vec3> = (0..3000).map(|i| point(i, 1.0)).collect();
+        let (regions, members) = Regions::new(&points, 20);
+        assert!(members.len() > 100);
+        for size in [1.0, 0.1, 0.01, 1e-4] {
+            for packet in 0..200 {
+                let mut x = Vec3x16::default();
+                (0..LANES).for_each(|lane| {
+                    x.set(lane, points[packet] + point((packet * LANES + lane) as u32, size));
+                });
+                let expected: [usize; LANES] = std::array::from_fn(|lane| regions.of(x.get(lane)));
+                assert_eq!(regions.find(&x), expected, "{size}");
+            }
+        }
     }
 }

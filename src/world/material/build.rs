@@ -161,6 +161,7 @@ impl<'a> Builder<'a> {
             lobe_list: number(&mut self.lobe_lists, &lobes),
             kinds: LobeKinds::of(&lobes),
             lambert: bare && lobes.is_empty(),
+            min_alpha: lobes.iter().map(LobeModel::min_alpha).fold(1.0, f32::min),
             lobes,
             mean_roughness: false,
         };

@@ -3,7 +3,7 @@
 use super::base::CoatInterface;
 use super::build::{Builder, Colouring, MaterialEntry};
 use super::colours::opaque;
-use super::model::Bsdf;
+use super::model::{Bsdf, Model};
 use super::straight::LastStraight;
 use base::math::{Rgb, luminance};
 use glam::Vec2;
@@ -48,6 +48,33 @@ impl Materials {
     #[inline]
     pub fn coat_transmittance(&self, coat: u32, cos: f32) -> f32 {
         self.coats.get(coat as usize).map_or(1.0, |coat| coat.transmittance(cos))
+    }
+
+    /// Returns true if a material scatters light by densities alone: by no mirrors, no glass and no gaps.
+    #[inline]
+    pub fn has_only_densities(&self, id: MaterialId) -> bool {
+        let by_densities = |model: &Model| !model.kinds.delta && !model.kinds.pass_light;
+        let entry = &self.entries[id.0 as usize];
+        by_densities(&entry.coloured.model)
+            && entry.levels.iter().flat_map(|levels| &levels.models).all(|level| by_densities(&level.model))
+    }
+
+    /// Returns the minimum roughness α of the rough lobes of a material; 1 without one.
+    #[inline]
+    pub fn min_alpha(&self, id: MaterialId) -> f32 {
+        let entry = &self.entries[id.0 as usize];
+        let levels = entry.levels.iter().flat_map(|levels| &levels.models);
+        levels.map(|level| level.model.min_alpha).fold(entry.coloured.model.min_alpha, f32::min)
+    }
+
+    /// Returns a material that is the same everywhere; `None` if something of it is textured.
+    #[inline]
+    pub fn constant(&self, id: MaterialId) -> Option<Bsdf<'_>> {
+        let coloured = &self.entries[id.0 as usize].coloured;
+        match &coloured.colours {
+            Colouring::Constant(colours) => Some(coloured.model.with_colours(colours)),
+            Colouring::Textured(_) => None,
+        }
     }
 
     /// Returns the material at texture coordinates `uv`.

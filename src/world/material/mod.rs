@@ -26,6 +26,7 @@ mod materials;
 mod microfacet;
 mod model;
 mod packet;
+mod prepared;
 mod principled;
 mod roughness;
 mod sample;
@@ -39,6 +40,7 @@ pub use lobe::{DirectionBound, DirectionBounds16, DullLobe, LobeShape};
 pub use materials::Materials;
 pub use model::Bsdf;
 pub use packet::{BsdfSamples16, Bsdfs16};
+pub use prepared::{MeanBsdf, PreparedBsdf};
 pub use straight::LastStraight;
 
 #[cfg(test)]

@@ -43,6 +43,8 @@ pub(super) struct Model {
     pub lambert: bool,
     /// True if the roughness is textured and the model stands for its mean.
     pub mean_roughness: bool,
+    /// Minimum roughness α of the rough lobes; 1 without one.
+    pub min_alpha: f32,
 }
 
 /// Properties of a list of lobes: true if some lobe has the property.

@@ -58,6 +58,11 @@ impl AnisotropicLobe {
         lobe
     }
 
+    /// Returns the smaller roughness α.
+    pub(super) fn min_alpha(&self) -> f32 {
+        self.alpha.min_element()
+    }
+
     /// Integrates the albedo for the inclination of `wo`, in the xz plane, as the mean over azimuths.
     fn integrated(&self, wo: Vec3, rule: &[(f32, f32)]) -> Rgb {
         let mut sum = Rgb::ZERO;

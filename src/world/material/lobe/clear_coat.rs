@@ -36,6 +36,11 @@ impl ClearCoat {
         ClearCoat { alpha_sq: alpha * alpha, masking: Microfacets::new(Distribution::Ggx, MASKING_ALPHA) }
     }
 
+    /// Returns the roughness α.
+    pub(super) fn alpha(&self) -> f32 {
+        self.alpha_sq.sqrt()
+    }
+
     /// Returns the density of facets from the squared cosine of their inclination.
     #[inline]
     fn density(&self, cos_sq: f32) -> f32 {

@@ -87,6 +87,16 @@ impl LobeModel {
         }
     }
 
+    /// Returns the minimum roughness α of a rough lobe over all directions on the surface; 1 for other lobes.
+    pub fn min_alpha(&self) -> f32 {
+        match self {
+            LobeModel::Rough(rough) => rough.alpha(),
+            LobeModel::Anisotropic(rough) => rough.min_alpha(),
+            LobeModel::ClearCoat(coat) => coat.alpha(),
+            _ => 1.0,
+        }
+    }
+
     /// Returns the index of refraction on the far side over that on the side of `wo` for a rough lobe that refracts; 1
     /// for other lobes.
     #[inline]

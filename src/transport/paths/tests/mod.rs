@@ -1,5 +1,7 @@
 //! Ends of chains: their path classes, and the textures there.
 
+mod groups;
+
 use super::{Batch, ChainEnd, Estimand, LightSamples, PathPolicy, PathStart, RayCounts, start};
 use base::math::{Rgb, luminance};
 use base::sampling::hash;
