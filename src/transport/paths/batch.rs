@@ -69,8 +69,8 @@ impl Batch {
     ) {
         counts.rays += self.count as u64;
         let mut kept = 0;
-        // Neighbours' rays to lamps are nearly parallel, rays to a sky are not.
-        let coherent = depth == 1 && world.emitters.environment.is_none();
+        // Neighbours' rays to small lamps are nearly parallel, rays to a sky or a large lamp are not.
+        let coherent = depth == 1 && world.emitters.send_from_few_directions();
         let mut hits = Hits16::default();
         for index in 0..self.count.div_ceil(LANES) {
             let mut packet = self.packets[index].clone();
