@@ -340,10 +340,10 @@ struct Step<'a> {
     kept: &'a mut usize,
 }
 
-/// Returns true if the shadow rays of a packet at the end of edge `depth` are about parallel: neighbours' rays to lamps
-/// are, rays to a sky are not.
+/// Returns true if the shadow rays of a packet at the end of edge `depth` are about parallel: neighbours' rays to small
+/// lamps are, rays to a sky or a large lamp are not.
 fn are_coherent(world: &World, depth: u32) -> bool {
-    depth == 1 && world.emitters.environment.is_none()
+    depth == 1 && world.emitters.send_from_few_directions()
 }
 
 /// Returns the surfaces that a packet has hit in the lanes of `found`, with the footprints of its rays.

@@ -48,15 +48,18 @@ pub fn start(
             samplers.seed[i] = pixel_seed(pixel, seed);
             samplers.index[i] = sample;
         }
-        let anywhere = samplers.point(1);
+        let mut jitter = samplers.point(1);
+        if estimand != Estimand::Pixels {
+            for (i, path) in starts.iter().enumerate() {
+                jitter.set(i, estimand.eye_sampler(path.pixel, path.seed, path.sample).1);
+            }
+        }
+        let pixels = starts.map(|path| path.pixel);
+        let numbers = starts.map(|path| <[u32; 2]>::from(estimand.numbers(path.seed, path.sample)));
         let mut rays = Rays16::default();
-        for (i, path) in starts.into_iter().enumerate() {
-            let jitter = match estimand {
-                Estimand::Pixels => anywhere.get(i),
-                Estimand::EyeSamples { .. } => estimand.eye_sampler(path.pixel, path.seed, path.sample).1,
-            };
-            let (seed, sample) = estimand.numbers(path.seed, path.sample);
-            rays.set(i, &world.behind_hidden(view.sample_ray(path.pixel, jitter, seed, sample)));
+        view.sample_rays16(&pixels, &jitter, &numbers, &mut rays);
+        if world.scene.hides_emitters {
+            (0..count).for_each(|i| rays.set(i, &world.behind_hidden(rays.get(i))));
         }
         batch.push(rays, samplers, cone, count);
     }

@@ -1,7 +1,7 @@
 //! Area lights: the emitting triangles of one mesh, sampled uniformly by area.
 
 use super::distribution::DiscreteDistribution;
-use base::math::{Rgb, luminance};
+use base::math::{F32x16, Rgb, U32x16, luminance};
 use base::sampling::uniform_triangle;
 use glam::{Vec2, Vec3};
 use scene::{Emission, Scene, Texture, TextureId, Textures};
@@ -138,6 +138,13 @@ impl AreaLight {
     pub(super) fn choose_triangle(&self, u: Vec2) -> (u32, [Vec3; 4], Vec2) {
         let (triangle, rest) = self.triangles.sample(u.x);
         (triangle as u32, self.shapes[triangle], Vec2::new(rest, u.y))
+    }
+
+    /// Returns the triangles that [`AreaLight::choose_triangle`] chooses in sixteen lanes, and the first of the random
+    /// numbers that it returns.
+    #[inline]
+    pub(super) fn choose_triangles16(&self, u: &F32x16) -> (U32x16, F32x16) {
+        self.triangles.sample16(u)
     }
 
     /// Returns emitted radiance relative to the maximum of the light, from 0 to 1.

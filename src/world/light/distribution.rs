@@ -4,6 +4,7 @@
 //! narrows the search to a few entries, because every step of a binary search in the large distributions of environment
 //! maps is a cache miss.
 
+use base::math::{F32x16, LANES, U32x16};
 use std::ops::Range;
 
 /// A discrete distribution over `0..len`, in proportion to non-negative weights.
@@ -88,6 +89,29 @@ impl DiscreteDistribution {
         self.search(u, self.bracket(u))
     }
 
+    /// Returns [`DiscreteDistribution::sample`] of sixteen numbers. All outcomes are tried in turn, so there should be
+    /// few.
+    #[inline]
+    pub(super) fn sample16(&self, u: &F32x16) -> (U32x16, F32x16) {
+        let sums = &self.cumulative;
+        let (mut outcome, mut low, mut high) = ([0; LANES], [sums[0]; LANES], [sums[1]; LANES]);
+        for k in 1..self.len() {
+            for i in 0..LANES {
+                let passes = sums[k] <= u[i];
+                outcome[i] = if passes { k as u32 } else { outcome[i] };
+                low[i] = if passes { sums[k] } else { low[i] };
+                high[i] = if passes { sums[k + 1] } else { high[i] };
+            }
+        }
+        let mut rest = [0.0; LANES];
+        for i in 0..LANES {
+            let width = high[i] - low[i];
+            let within = if width > 0.0 { (u[i] - low[i]) / width } else { 0.0 };
+            rest[i] = within.clamp(0.0, 1.0 - f32::EPSILON);
+        }
+        (outcome, rest)
+    }
+
     /// Returns a range of outcomes that contains the outcome at `u`. It is a separate step so that several searches can
     /// wait for memory together.
     #[inline]
@@ -134,6 +158,21 @@ mod tests {
         }
         assert_eq!(counts, [0, n / 4, 0, 3 * n / 4, 0]);
         assert_eq!(d.probability(3), 0.75);
+    }
+
+    #[test]
+    fn sixteen_numbers_have_the_outcomes_of_each() {
+        let weights = [[3.0, 0.0, 1.0, 0.0], [0.0, 0.0, 2.0, 5.0], [1.0, 1e-9, 1e-3, 7.0]];
+        for weights in weights.iter().flat_map(|weights| (1..=4).map(move |count| &weights[..count])) {
+            let d = DiscreteDistribution::new(weights.iter().copied());
+            for first in (0..4096).step_by(LANES).filter(|_| !d.is_empty()) {
+                let u = std::array::from_fn(|i| ((first + i) as f32 / 4095.0).min(1.0 - f32::EPSILON / 2.0));
+                let (outcomes, rests) = d.sample16(&u);
+                for i in 0..LANES {
+                    assert_eq!((outcomes[i] as usize, rests[i]), d.sample(u[i]), "{weights:?} {}", u[i]);
+                }
+            }
+        }
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! All emitters of a scene.
 
 use super::area::AreaLight;
+use super::delta::delta_power;
 use super::environment::EnvironmentLight;
 use super::receivers::Receivers16;
 use super::select::EmitterChoice;
@@ -14,6 +15,9 @@ const NO_LIGHT: u32 = u32::MAX;
 
 /// Ratio of radius to distance below which an emitter counts as small.
 const SMALL: f32 = 0.3;
+
+/// Ratio of an emitter's radius to the scene's below which its light comes from few directions.
+const FEW_DIRECTIONS: f32 = 0.1;
 
 /// Minimum number of emitters for which visibility is learned.
 const MIN_HIDDEN: usize = 8;
@@ -34,6 +38,8 @@ pub struct Emitters {
     light_of_mesh: Vec<u32>,
     /// Spheres around the emitting meshes: centre and squared radius.
     spheres: Vec<(Vec3, f32)>,
+    /// See [`Emitters::send_from_few_directions`].
+    few_directions: bool,
     pub(super) choice: EmitterChoice,
 }
 
@@ -54,8 +60,11 @@ impl Emitters {
             let EmitterBounds { low, high, .. } = EmitterBounds::of_area(light);
             (0.5 * (low + high), 0.25 * (high - low).length_squared())
         };
-        let spheres = areas.iter().map(sphere).collect();
-        Emitters { spheres, areas, deltas, environment, light_of_mesh, choice }
+        let spheres: Vec<(Vec3, f32)> = areas.iter().map(sphere).collect();
+        let radii_sq = areas.iter().zip(&spheres).map(|(light, (_, radius_sq))| (light.power, *radius_sq));
+        let of_deltas = deltas.iter().map(|light| (delta_power(light, 0.5 * diagonal), 0.0));
+        let few_directions = environment.is_none() && look_small(radii_sq.chain(of_deltas), 0.5 * diagonal);
+        Emitters { spheres, areas, deltas, environment, light_of_mesh, few_directions, choice }
     }
 
     /// Returns true if a mesh emits.
@@ -79,6 +88,13 @@ impl Emitters {
     #[inline]
     pub fn are_hittable(&self) -> bool {
         !self.areas.is_empty() || self.environment.is_some()
+    }
+
+    /// Returns true if light reaches most points from small solid angles, so that light samples of neighbouring points
+    /// are nearly parallel. Queries of such segments should be marked as coherent.
+    #[inline]
+    pub fn send_from_few_directions(&self) -> bool {
+        self.few_directions
     }
 
     /// Returns true if there is light from infinitely far.
@@ -166,4 +182,14 @@ impl Emitters {
     pub(super) fn environment_index(&self) -> u32 {
         (self.areas.len() + self.deltas.len()) as u32
     }
+}
+
+/// Returns true if emitters of the given powers and squared radii look small, on average by power, from the distance
+/// `radius`.
+fn look_small(emitters: impl Iterator<Item = (f32, f32)>, radius: f32) -> bool {
+    let add = |(all, sum): (f64, f64), (power, radius_sq): (f32, f32)| {
+        (all + f64::from(power), sum + f64::from(power) * f64::from(radius_sq))
+    };
+    let (power, sum) = emitters.fold((0.0, 0.0), add);
+    sum <= power * f64::from(FEW_DIRECTIONS * radius).powi(2)
 }

@@ -19,6 +19,7 @@ mod select;
 #[cfg(test)]
 mod tests;
 mod tree;
+mod triangles;
 
 pub use area::{AreaLight, AreaPoint, emitted};
 pub use delta::{delta_irradiance, delta_power, spot_falloff};

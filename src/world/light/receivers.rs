@@ -15,12 +15,10 @@ pub struct Receivers16<'a> {
 }
 
 impl<'a> Receivers16<'a> {
-    /// Returns the learned factors on the importance of emitters, by lane.
+    /// Returns the learned factors on the importance of emitters, by lane; `None` if they are not used.
     #[inline]
-    pub(super) fn emitter_factors(&self) -> [Option<&'a [f32]>; LANES] {
-        match self.learned.and_then(|learned| learned.emitters.as_ref()) {
-            Some(emitters) => emitters.at(self.position).map(Some),
-            None => [None; LANES],
-        }
+    pub(super) fn emitter_factors(&self) -> Option<[&'a [f32]; LANES]> {
+        let emitters = self.learned.and_then(|learned| learned.emitters.as_ref())?;
+        Some(emitters.at(self.position))
     }
 }

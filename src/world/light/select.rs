@@ -19,11 +19,16 @@ const MAX_CANDIDATES: usize = 32;
 /// Number of nodes in the cut of the tree if there are more emitters than candidates.
 const CUT: usize = 16;
 
+/// Maximum number of candidates whose weights are a small array.
+const FEW: usize = 8;
+
 /// Choice among the emitters of a scene.
 #[derive(Clone, Debug)]
 pub(super) struct EmitterChoice {
     /// Distribution of the candidates by power: nodes of the cut, then the environment.
     by_power: DiscreteDistribution,
+    /// Emitter of each candidate; `None` for nodes above several emitters.
+    candidates: Vec<Option<u32>>,
     /// Tree over all emitters but the environment.
     tree: EmitterTree,
     /// Index of the environment, which follows all other emitters.
@@ -46,10 +51,12 @@ impl EmitterChoice {
         let (tree, powers) = EmitterTree::new(areas, deltas, extents, cut);
         // Flux through the scene's bounding sphere.
         let flux = environment.map(|e| 4.0 * PI * PI * radius * radius * e.mean_luminance());
+        let index = (areas.len() + deltas.len()) as u32;
         EmitterChoice {
             by_power: DiscreteDistribution::new(powers.into_iter().chain(flux)),
+            candidates: tree.top_emitters().chain(flux.map(|_| Some(index))).collect(),
             tree,
-            environment: (areas.len() + deltas.len()) as u32,
+            environment: index,
             environment_weight: environment.map(|e| PI * PI * e.mean_luminance()),
         }
     }
@@ -63,74 +70,93 @@ impl EmitterChoice {
     /// emitter can be chosen.
     #[inline]
     pub fn sample(&self, at: Receivers16, u: &F32x16, wanted: u16) -> (U32x16, F32x16) {
+        match self.by_power.len() {
+            _ if self.by_power.is_empty() => ([0; LANES], [0.0; LANES]),
+            1 => ([0; LANES], [1.0; LANES]),
+            0..=FEW => self.sample_among::<FEW>(at, u, wanted),
+            _ => self.sample_among::<MAX_CANDIDATES>(at, u, wanted),
+        }
+    }
+
+    /// Chooses an emitter among at most `N` candidates (see [`EmitterChoice::sample`]).
+    #[inline]
+    fn sample_among<const N: usize>(&self, at: Receivers16, u: &F32x16, wanted: u16) -> (U32x16, F32x16) {
         let (mut chosen, mut choice) = ([0; LANES], [0.0; LANES]);
-        let count = self.by_power.len();
-        if self.by_power.is_empty() {
-            return (chosen, choice);
-        }
-        if count == 1 {
-            return (chosen, [1.0; LANES]);
-        }
         let factors = at.emitter_factors();
-        let (weights, total) = self.weights(at, &factors);
+        let mut weights = [[0.0; LANES]; N];
+        let weights = &mut weights[..self.by_power.len()];
+        let total = self.weigh(at, factors.as_ref(), weights);
         let mut left = [0.0; LANES];
         for i in 0..LANES {
             left[i] = u[i] * total[i];
         }
         // A lane passes the candidates whose cumulative weight does not exceed its random number.
-        let mut within = left;
-        for w in &weights[..count] {
+        let (mut within, mut weight) = (left, weights[0]);
+        for index in 0..weights.len() {
+            let next = weights[(index + 1).min(weights.len() - 1)];
             for i in 0..LANES {
-                left[i] -= w[i];
+                left[i] -= weights[index][i];
                 let passes = left[i] >= 0.0;
                 chosen[i] += u32::from(passes);
                 within[i] = if passes { left[i] } else { within[i] };
+                weight[i] = if passes { next[i] } else { weight[i] };
             }
         }
         for i in 0..LANES {
-            if chosen[i] as usize >= count {
+            if chosen[i] as usize >= weights.len() {
                 // Rounding left a remainder: the lane takes its last candidate of positive weight.
-                let last = weights[..count].iter().rposition(|w| w[i] > 0.0);
-                chosen[i] = last.unwrap_or(0) as u32;
-            }
-            let weight = weights[chosen[i] as usize][i];
-            choice[i] = if total[i] > 0.0 { weight / total[i] } else { 0.0 };
-            within[i] /= weight;
-        }
-        for lane in lanes_in(wanted) {
-            let candidate = chosen[lane] as usize;
-            if candidate == self.tree.len() {
-                chosen[lane] = self.environment;
-            } else if choice[lane] > 0.0 {
-                let point = PointAndNormal { x: at.position.get(lane), n: at.normal.get(lane) };
-                let within = within[lane].min(1.0 - f32::EPSILON);
-                let below = self.tree.sample(candidate, point, factors[lane], within);
-                let (emitter, probability) = below.unwrap_or_default();
-                chosen[lane] = emitter;
-                choice[lane] *= probability;
+                let last = weights.iter().rposition(|w| w[i] > 0.0).unwrap_or(0);
+                (chosen[i], weight[i]) = (last as u32, weights[last][i]);
             }
         }
-        (chosen, choice)
+        for i in 0..LANES {
+            choice[i] = if total[i] > 0.0 { weight[i] / total[i] } else { 0.0 };
+            within[i] /= weight[i];
+        }
+        let (mut emitters, mut below) = ([0; LANES], 0u16);
+        for i in 0..LANES {
+            match self.candidates[chosen[i] as usize] {
+                Some(emitter) => emitters[i] = emitter,
+                None => below |= u16::from(choice[i] > 0.0) << i,
+            }
+        }
+        for lane in lanes_in(below & wanted) {
+            let point = PointAndNormal { x: at.position.get(lane), n: at.normal.get(lane) };
+            let within = within[lane].min(1.0 - f32::EPSILON);
+            let factors = factors.map(|factors| factors[lane]);
+            let found = self.tree.sample(chosen[lane] as usize, point, factors, within);
+            let (emitter, probability) = found.unwrap_or_default();
+            emitters[lane] = emitter;
+            choice[lane] *= probability;
+        }
+        (emitters, choice)
     }
 
     /// Returns the probability with which [`EmitterChoice::sample`] chooses emitter `index[lane]`, for the lanes of
     /// `wanted`.
     #[inline]
     pub fn probability(&self, at: Receivers16, index: &U32x16, wanted: u16) -> F32x16 {
-        if self.by_power.len() == 1 {
-            return [1.0; LANES];
+        match self.by_power.len() {
+            1 => [1.0; LANES],
+            0..=FEW => self.probability_among::<FEW>(at, index, wanted),
+            _ => self.probability_among::<MAX_CANDIDATES>(at, index, wanted),
         }
+    }
+
+    /// Returns the probability with which [`EmitterChoice::sample_among`] chooses an emitter in each lane.
+    #[inline]
+    fn probability_among<const N: usize>(&self, at: Receivers16, index: &U32x16, wanted: u16) -> F32x16 {
         let factors = at.emitter_factors();
         let mut probability = [1.0; LANES];
         let mut candidates = [self.tree.len() as u32; LANES];
-        for lane in lanes_in(wanted) {
-            if index[lane] != self.environment {
-                let point = PointAndNormal { x: at.position.get(lane), n: at.normal.get(lane) };
-                let (top, below) = self.tree.probability(index[lane] as usize, point, factors[lane]);
-                (candidates[lane], probability[lane]) = (top as u32, below);
-            }
+        for lane in lanes_in(wanted).filter(|lane| index[*lane] != self.environment) {
+            let point = PointAndNormal { x: at.position.get(lane), n: at.normal.get(lane) };
+            let factors = factors.map(|factors| factors[lane]);
+            let (top, below) = self.tree.probability(index[lane] as usize, point, factors);
+            (candidates[lane], probability[lane]) = (top as u32, below);
         }
-        let (weights, total) = self.weights(at, &factors);
+        let mut weights = [[0.0; LANES]; N];
+        let total = self.weigh(at, factors.as_ref(), &mut weights[..self.by_power.len()]);
         for i in 0..LANES {
             let choice = if total[i] > 0.0 { weights[candidates[i] as usize][i] / total[i] } else { 0.0 };
             probability[i] *= choice;
@@ -138,28 +164,22 @@ impl EmitterChoice {
         probability
     }
 
-    /// Returns the weights of all candidates, and their sums.
+    /// Writes the weights of all candidates. Returns their sums.
     #[inline]
-    fn weights(
-        &self,
-        at: Receivers16,
-        factors: &[Option<&[f32]>; LANES],
-    ) -> ([F32x16; MAX_CANDIDATES], F32x16) {
-        let mut weights = [[0.0; LANES]; MAX_CANDIDATES];
-        self.tree.weigh(at.position, at.normal, &mut weights);
-        for (lane, factors) in factors.iter().enumerate() {
-            for (w, factor) in
-                weights.iter_mut().zip(factors.iter().flat_map(|factors| &factors[..self.tree.len()]))
-            {
-                w[lane] *= factor;
+    fn weigh(&self, at: Receivers16, factors: Option<&[&[f32]; LANES]>, weights: &mut [F32x16]) -> F32x16 {
+        self.tree.weigh(at.position, at.normal, weights);
+        if let Some(factors) = factors {
+            for (lane, factors) in factors.iter().enumerate() {
+                for (w, factor) in weights.iter_mut().zip(&factors[..self.tree.len()]) {
+                    w[lane] *= factor;
+                }
             }
         }
         if let Some(weight) = self.environment_weight {
             weights[self.by_power.len() - 1] = [weight; LANES];
         }
-        let weights_used = &mut weights[..self.by_power.len()];
         let mut local_total = [0.0; LANES];
-        for w in weights_used.iter() {
+        for w in weights.iter() {
             for i in 0..LANES {
                 local_total[i] += w[i];
             }
@@ -170,7 +190,7 @@ impl EmitterChoice {
             scale[i] = if usable { (1.0 - BY_POWER) / local_total[i] } else { 0.0 };
         }
         let mut total = [0.0; LANES];
-        for (index, w) in weights_used.iter_mut().enumerate() {
+        for (index, w) in weights.iter_mut().enumerate() {
             let by_power = BY_POWER * self.by_power.probability(index);
             for i in 0..LANES {
                 // The weight of emitters that cannot light this side stays zero.
@@ -179,6 +199,6 @@ impl EmitterChoice {
                 total[i] += w[i];
             }
         }
-        (weights, total)
+        total
     }
 }

@@ -249,6 +249,63 @@ fn the_mean_of_direct_light_is_the_sum_over_all_emitters() {
 }
 
 #[test]
+fn lanes_that_share_lamps_have_the_samples_of_each_lane_alone() {
+    let mut scene = scene(20, 8);
+    // A lamp of more triangles than are tried for all lanes together.
+    let one = scene.meshes[0].clone();
+    let triangles = one.triangles.iter().cycle().take(40).copied().collect();
+    scene.meshes.push(Mesh { triangles, ..one });
+    let emitters = emitters(&scene);
+    let mut sampler = Sampler::new(11, 0);
+    for _ in 0..200 {
+        let (mut x, mut n, mut places) = (Vec3x16::default(), Vec3x16::default(), Vec2x16::default());
+        let near = receiver(&scene, &mut sampler);
+        let step = sampler.next_1d().powi(4);
+        let choices = std::array::from_fn(|i| {
+            let (position, normal) = if i % 3 > 0 { near } else { receiver(&scene, &mut sampler) };
+            x.set(i, position);
+            n.set(i, normal);
+            places.set(i, sampler.next_2d());
+            (step * sampler.next_1d()).min(1.0 - f32::EPSILON)
+        });
+        let at = Receivers16 { position: &x, normal: &n, learned: None };
+        let wanted = sampler.next_1d().to_bits() as u16 | 1;
+        let together = emitters.sample_direct(at, &choices, &places, wanted);
+        for i in base::math::lanes_in(wanted) {
+            let alone = emitters.sample_direct(at, &choices, &places, 1 << i);
+            assert_eq!(together.useful() & 1 << i, alone.useful());
+            if alone.useful() != 0 {
+                assert_eq!(together.direction.get(i), alone.direction.get(i));
+                assert_eq!(together.normal.get(i), alone.normal.get(i));
+                assert_eq!(together.radiance.get(i), alone.radiance.get(i));
+                assert_eq!((together.distance[i], together.pdf[i]), (alone.distance[i], alone.pdf[i]));
+                assert_eq!(together.delta[i], alone.delta[i]);
+            }
+        }
+        assert_eq!(together.useful() & !wanted, 0);
+    }
+}
+
+#[test]
+fn small_lamps_alone_send_light_from_few_directions() {
+    let room = |size: f32, radiance: f32| {
+        let meshes = vec![
+            lamp(Vec3::ZERO, Vec3::Y, 0.01, Rgb::splat(1e4), false),
+            lamp(Vec3::ONE, Vec3::Y, size, Rgb::splat(radiance), false),
+        ];
+        emitters(&Scene { meshes, ..Scene::default() }).send_from_few_directions()
+    };
+    assert!(room(0.1, 1.0) && !room(10.0, 1.0));
+    // A large lamp counts by its power.
+    assert!(room(10.0, 1e-9));
+    let lights = vec![DeltaLight::Point { position: Vec3::ONE, intensity: Rgb::ONE }];
+    let point = Scene { lights, ..Scene::default() };
+    assert!(emitters(&point).send_from_few_directions());
+    let environment = Some(Environment::Constant(Rgb::ONE));
+    assert!(!emitters(&Scene { environment, ..point }).send_from_few_directions());
+}
+
+#[test]
 fn densities_of_points_are_those_of_sampling_them() {
     for count in COUNTS {
         let scene = scene(count, 7);

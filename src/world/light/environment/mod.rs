@@ -2,11 +2,18 @@
 //!
 //! A tile of about average flux is sampled first, then a direction within the tile. A distant disc, such as the sun, is
 //! a tile of its own in front of the others. It hides nothing: radiances and densities add up.
+//!
+//! Next-event estimation ([`EnvironmentLight::sample16`]) chooses among directions that were sampled beforehand in each
+//! tile. Emission of photons and virtual lights samples directions anew.
 
 mod discs;
 mod equal_cells;
 mod learned;
 mod map;
+mod presampled;
+#[cfg(test)]
+mod presampled_tests;
+mod sample;
 #[cfg(test)]
 mod sky_tests;
 mod table;
@@ -15,6 +22,7 @@ mod tests;
 mod tiles;
 
 pub use learned::{LearnedSky, SkyObservations};
+pub use sample::{EnvironmentSample, EnvironmentSamples16};
 
 use base::math::{LANES, Rgb, Vec2x16, Vec3x16, lanes_in, luminance};
 use base::sampling::uniform_sphere;
@@ -22,6 +30,7 @@ use discs::Discs;
 use equal_cells::EqualCells;
 use glam::{Vec2, Vec3};
 use map::{Map, bilinear};
+use presampled::Presamples;
 use scene::{DistantDisc, Environment};
 use std::f32::consts::FRAC_1_PI;
 use table::TileTable;
@@ -36,6 +45,8 @@ pub struct EnvironmentLight {
     discs: Discs,
     /// Distribution of the tiles by flux.
     by_flux: TileTable,
+    /// Directions for next-event estimation.
+    presamples: Presamples,
     /// Mean luminance over the sphere, W/(sr m²).
     mean_luminance: f32,
 }
@@ -45,17 +56,6 @@ pub struct EnvironmentLight {
 enum SkySource {
     Constant(Rgb),
     Map(Map),
-}
-
-/// A sampled direction towards the environment.
-#[derive(Clone, Copy, Debug)]
-pub struct EnvironmentSample {
-    /// Unit world direction towards the environment.
-    pub direction: Vec3,
-    /// Radiance arriving from that direction.
-    pub radiance: Rgb,
-    /// Density per solid angle.
-    pub pdf: f32,
 }
 
 /// A sampled tile, random numbers for a direction in it, and the factor on the density of that direction.
@@ -90,8 +90,22 @@ impl EnvironmentLight {
         }
         let mean_luminance = with_discs;
         let by_flux = TileTable::new(tiles.all(), &vec![0.0; tiles.all().len()], 1.0);
-        let light = EnvironmentLight { source, tiles, discs, by_flux, mean_luminance };
-        (mean_luminance > 0.0 && mean_luminance.is_finite()).then_some(light)
+        let presamples = Presamples::default();
+        let mut light = EnvironmentLight { source, tiles, discs, by_flux, presamples, mean_luminance };
+        if !(mean_luminance > 0.0 && mean_luminance.is_finite()) {
+            return None;
+        }
+        light.presamples = light.presample();
+        Some(light)
+    }
+
+    /// Samples directions of all tiles.
+    fn presample(&self) -> Presamples {
+        let flux: Vec<f32> = self.tiles.all().iter().map(|tile| tile.flux).collect();
+        let sample = |tile: usize, u: &[Vec2; LANES]| {
+            self.sample_tiles(&u.map(|u| TileSample { tile, u, density: 1.0 }), u16::MAX)
+        };
+        Presamples::new(&flux, sample, |direction| self.discs.around(direction).next().is_some())
     }
 
     /// Learns from observations how much light comes from each tile.
@@ -177,53 +191,69 @@ impl EnvironmentLight {
 
     /// Samples a direction about in proportion to luminance; `None` if the density is zero.
     pub fn sample(&self, u: Vec2) -> Option<EnvironmentSample> {
-        self.sample16(&Vec2x16 { x: [u.x; LANES], y: [u.y; LANES] }, 1, None)[0]
+        if let Some(sample) = self.sample_even(u) {
+            return Some(sample);
+        }
+        let (tile, rest) = self.by_flux.sample(u.x);
+        let mut chosen = [TileSample::default(); LANES];
+        chosen[0] = TileSample { tile, u: Vec2::new(rest, u.y), density: self.by_flux.density(tile) };
+        let sample = self.sample_tiles(&chosen, 1)[0]?;
+        if self.discs.around(sample.direction).next().is_none() {
+            return Some(sample);
+        }
+        let (radiance, pdf) = self.radiance_pdf(sample.direction);
+        (pdf > 0.0 && pdf.is_finite()).then_some(EnvironmentSample { radiance, pdf, ..sample })
     }
 
-    /// Samples a direction in each lane of `wanted`; `None` in other lanes. The lanes wait for memory together.
-    pub fn sample16(
-        &self,
-        u: &Vec2x16,
-        wanted: u16,
-        learned: LearnedAt,
-    ) -> [Option<EnvironmentSample>; LANES] {
-        if let (SkySource::Constant(radiance), None, true) = (&self.source, learned, self.discs.is_empty()) {
-            let (radiance, pdf) = (*radiance, 0.25 * FRAC_1_PI);
-            return each(wanted, |i| {
-                Some(EnvironmentSample { direction: uniform_sphere(u.get(i)), radiance, pdf })
-            });
+    /// Samples a direction of a constant sky without discs; `None` if the environment is another.
+    #[inline]
+    fn sample_even(&self, u: Vec2) -> Option<EnvironmentSample> {
+        match self.source {
+            SkySource::Constant(radiance) if self.discs.is_empty() => {
+                Some(EnvironmentSample { direction: uniform_sphere(u), radiance, pdf: 0.25 * FRAC_1_PI })
+            }
+            _ => None,
+        }
+    }
+
+    /// Samples one of the directions that were sampled beforehand, in each lane of `wanted`. Densities are those of
+    /// continuous directions. A constant sky without discs, of which nothing was learned, has new directions.
+    pub fn sample16(&self, u: &Vec2x16, wanted: u16, learned: LearnedAt) -> EnvironmentSamples16 {
+        let mut samples = EnvironmentSamples16::default();
+        if learned.is_none() && self.sample_even(Vec2::ZERO).is_some() {
+            for i in lanes_in(wanted) {
+                if let Some(sample) = self.sample_even(u.get(i)) {
+                    samples.set(i, sample.direction, sample.radiance, sample.pdf);
+                }
+            }
+            return samples;
         }
         let tables = self.tables(learned);
-        let chosen = each(wanted, |i| {
+        let (mut positions, mut densities) = ([0; LANES], [0.0; LANES]);
+        for i in lanes_in(wanted) {
             let (tile, rest) = tables[i].sample(u.x[i]);
-            TileSample { tile, u: Vec2::new(rest, u.y[i]), density: tables[i].density(tile) }
-        });
-        let mut samples = self.sample_tiles(&chosen, wanted);
-        if !self.discs.is_empty() {
-            self.add_up(&mut samples, learned);
+            positions[i] = self.presamples.find(tile, Vec2::new(rest, u.y[i]));
+            densities[i] = tables[i].density(tile);
         }
-        samples
-    }
-
-    /// Adds up the radiances and densities of all sources in directions that lie on a disc.
-    fn add_up(&self, samples: &mut [Option<EnvironmentSample>; LANES], learned: LearnedAt) {
-        let (mut directions, mut on_discs) = (Vec3x16::default(), 0);
-        for (i, sample) in samples.iter().enumerate() {
-            if let Some(sample) = sample
-                && self.discs.around(sample.direction).next().is_some()
-            {
-                directions.set(i, sample.direction);
-                on_discs |= 1 << i;
-            }
+        let mut on_discs = 0;
+        for i in lanes_in(wanted) {
+            let presample = self.presamples.get(positions[i]);
+            samples.set(i, presample.direction, presample.radiance, presample.density);
+            on_discs |= u16::from(presample.on_disc) << i;
+        }
+        for i in 0..LANES {
+            samples.pdf[i] = densities[i] * samples.pdf[i];
         }
         if on_discs != 0 {
-            let found = self.radiance_pdf16(&directions, on_discs, learned);
+            let found = self.radiance_pdf16(&samples.direction, on_discs, learned);
             for i in lanes_in(on_discs) {
-                let (radiance, pdf) = found[i];
-                let sample = EnvironmentSample { direction: directions.get(i), radiance, pdf };
-                samples[i] = (pdf > 0.0 && pdf.is_finite()).then_some(sample);
+                samples.set(i, samples.direction.get(i), found[i].0, found[i].1);
             }
         }
+        for i in 0..LANES {
+            samples.pdf[i] = if samples.pdf[i] < f32::INFINITY { samples.pdf[i] } else { 0.0 };
+        }
+        samples
     }
 
     /// Samples a direction in each of sixteen tiles. Densities are relative.

@@ -111,6 +111,11 @@ impl EmitterTree {
         }
     }
 
+    /// Returns the emitters of the cut's nodes; `None` for nodes above several emitters.
+    pub fn top_emitters(&self) -> impl Iterator<Item = Option<u32>> {
+        self.top.iter().map(|(_, child)| child.get().err())
+    }
+
     /// Returns the number of nodes in the cut.
     pub fn len(&self) -> usize {
         self.top.len()
