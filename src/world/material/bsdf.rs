@@ -35,7 +35,7 @@ impl LobeSet {
 
     /// Returns true if the lobe in a slot is in the set.
     #[inline(always)]
-    fn has(self, slot: usize) -> bool {
+    pub(super) fn has(self, slot: usize) -> bool {
         self.0 >> slot & 1 != 0
     }
 }

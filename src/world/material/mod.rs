@@ -6,7 +6,8 @@
 //! `roughplastic`, `conductor`, `roughconductor`, `dielectric`, `roughdielectric`, `principled`, `mask` and `twosided`.
 //!
 //! Files use only files before them in this order: `microfacet`, `fresnel`, `table` and `albedo`; `base` and `lobe`
-//! (one file per lobe); `model` (data); `bsdf`, `sample`, `bound`, `packet`, `alike16` and `straight` (evaluation);
+//! (one file per lobe); `model` (data); `bsdf`, `sample`, `bound`, `packet`, `alike16`, `prepared`, `mean` and `straight`
+//! (evaluation);
 //! `colours`, `layers` and `build` (from the scene's materials); `materials` (lookup).
 //!
 //! All directions are in the local shading frame (z = shading normal), point away from the surface and have unit
@@ -23,9 +24,11 @@ mod fresnel;
 mod layers;
 mod lobe;
 mod materials;
+mod mean;
 mod microfacet;
 mod model;
 mod packet;
+mod prepared;
 mod principled;
 mod roughness;
 mod sample;
@@ -37,8 +40,10 @@ pub use alike16::AlikeBsdfs16;
 pub use bsdf::LobeSet;
 pub use lobe::{DirectionBound, DirectionBounds16, DullLobe, LobeShape};
 pub use materials::Materials;
+pub use mean::MeanBsdf;
 pub use model::Bsdf;
 pub use packet::{BsdfSamples16, Bsdfs16};
+pub use prepared::PreparedBsdf;
 pub use straight::LastStraight;
 
 #[cfg(test)]
