@@ -78,6 +78,16 @@ impl Vec3x16 {
         }
     }
 
+    /// Sets the lanes of a mask to those of another packet.
+    #[inline(always)]
+    pub fn blend(&mut self, mask: u16, other: &Vec3x16) {
+        for (row, other) in [&mut self.x, &mut self.y, &mut self.z].into_iter().zip(other.rows()) {
+            for i in 0..LANES {
+                row[i] = if mask >> i & 1 != 0 { other[i] } else { row[i] };
+            }
+        }
+    }
+
     /// Adds `v` times `scale`, coordinate by coordinate.
     #[inline(always)]
     pub fn add_scaled(&mut self, scale: Vec3, v: &Vec3x16) {

@@ -2,6 +2,7 @@
 //! numbers.
 
 mod cone;
+mod exp;
 mod frame;
 mod lanes;
 mod quadrature;
@@ -9,6 +10,7 @@ mod real;
 mod unit;
 
 pub use cone::Cone;
+pub use exp::lane_exp;
 pub use frame::Frame;
 pub use lanes::{F32x16, LANES, U32x16, Vec2x16, Vec3x16, first_lanes, lanes_in, mask_of};
 pub use quadrature::gauss_legendre;

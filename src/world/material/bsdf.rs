@@ -27,6 +27,9 @@ pub(super) struct Outgoing {
 }
 
 impl LobeSet {
+    /// All lobes.
+    pub(super) const ALL: LobeSet = LobeSet(!0);
+
     /// Returns true if the set is empty.
     #[inline]
     pub fn is_empty(self) -> bool {

@@ -6,8 +6,8 @@
 //! `roughplastic`, `conductor`, `roughconductor`, `dielectric`, `roughdielectric`, `principled`, `mask` and `twosided`.
 //!
 //! Files use only files before them in this order: `microfacet`, `fresnel`, `table` and `albedo`; `base` and `lobe`
-//! (one file per lobe); `model` (data); `bsdf`, `sample`, `bound`, `packet`, `alike16`, `prepared`, `mean` and `straight`
-//! (evaluation);
+//! (one file per lobe); `model` (data); `bsdf`, `sample`, `bound`, `packet`, `alike16`, `prepared`, `mean` and
+//! `straight` (evaluation);
 //! `colours`, `layers` and `build` (from the scene's materials); `materials` (lookup).
 //!
 //! All directions are in the local shading frame (z = shading normal), point away from the surface and have unit
