@@ -16,7 +16,7 @@ pub type F32x16 = [f32; LANES];
 pub type U32x16 = [u32; LANES];
 
 /// One point of the plane per lane.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
 pub struct Vec2x16 {
     /// First coordinates.
@@ -26,7 +26,7 @@ pub struct Vec2x16 {
 }
 
 /// One vector or colour per lane.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
 pub struct Vec3x16 {
     /// First coordinates.
@@ -35,6 +35,21 @@ pub struct Vec3x16 {
     pub y: F32x16,
     /// Third coordinates.
     pub z: F32x16,
+}
+
+// The derived forms would call a function for each row.
+impl Default for Vec2x16 {
+    #[inline(always)]
+    fn default() -> Vec2x16 {
+        Vec2x16 { x: [0.0; LANES], y: [0.0; LANES] }
+    }
+}
+
+impl Default for Vec3x16 {
+    #[inline(always)]
+    fn default() -> Vec3x16 {
+        Vec3x16::ZERO
+    }
 }
 
 impl Vec2x16 {
@@ -81,10 +96,11 @@ impl Vec3x16 {
     /// Sets the lanes of a mask to those of another packet.
     #[inline(always)]
     pub fn blend(&mut self, mask: u16, other: &Vec3x16) {
-        for (row, other) in [&mut self.x, &mut self.y, &mut self.z].into_iter().zip(other.rows()) {
-            for i in 0..LANES {
-                row[i] = if mask >> i & 1 != 0 { other[i] } else { row[i] };
-            }
+        for i in 0..LANES {
+            let set = mask >> i & 1 != 0;
+            self.x[i] = select(set, other.x[i], self.x[i]);
+            self.y[i] = select(set, other.y[i], self.y[i]);
+            self.z[i] = select(set, other.z[i], self.z[i]);
         }
     }
 
@@ -111,6 +127,14 @@ impl Vec3x16 {
         self.y[lane] = v.y;
         self.z[lane] = v.z;
     }
+}
+
+/// Returns `yes` if the condition holds, else `no`, without a branch.
+///
+/// Loops with `if` may compile to masked stores, whose values later loads await for dozens of cycles.
+#[inline(always)]
+pub fn select(condition: bool, yes: f32, no: f32) -> f32 {
+    std::hint::select_unpredictable(condition, yes, no)
 }
 
 /// Returns the mask of the first `count` lanes, at most all.

@@ -12,7 +12,7 @@ mod unit;
 pub use cone::Cone;
 pub use exp::lane_exp;
 pub use frame::Frame;
-pub use lanes::{F32x16, LANES, U32x16, Vec2x16, Vec3x16, first_lanes, lanes_in, mask_of};
+pub use lanes::{F32x16, LANES, U32x16, Vec2x16, Vec3x16, first_lanes, lanes_in, mask_of, select};
 pub use quadrature::gauss_legendre;
 pub use real::{F32x8, Real, WIDTH};
 pub use unit::{right_of, unit};

@@ -11,7 +11,7 @@
 //! exact function, which is the one that visible normals follow. The weight of a sample accounts for the difference (up
 //! to 0.35 %).
 
-use base::math::{F32x16, LANES, Rgb, Vec2x16, Vec3x16, lane_exp};
+use base::math::{F32x16, LANES, Rgb, Vec2x16, Vec3x16, lane_exp, select};
 use base::sampling::uniform_disk;
 use glam::{Vec2, Vec3};
 use scene::Distribution;
@@ -98,11 +98,11 @@ impl Microfacets {
             }
             Distribution::Beckmann => {
                 for l in 0..LANES {
-                    let cos_sq = if cos_sq[l] > MIN_COS_SQ { cos_sq[l] } else { MIN_COS_SQ };
+                    let cos_sq = select(cos_sq[l] > MIN_COS_SQ, cos_sq[l], MIN_COS_SQ);
                     let exponent = sin_sq[l] * inverse / cos_sq;
                     let inside = exponent <= MAX_EXPONENT;
-                    let gauss = lane_exp(if inside { -exponent } else { -MAX_EXPONENT });
-                    density[l] = if inside { gauss * FRAC_1_PI / (a2 * cos_sq * cos_sq) } else { 0.0 };
+                    let gauss = lane_exp(select(inside, -exponent, -MAX_EXPONENT));
+                    density[l] = select(inside, gauss * FRAC_1_PI / (a2 * cos_sq * cos_sq), 0.0);
                 }
             }
         }
@@ -139,24 +139,21 @@ impl Microfacets {
     #[inline]
     pub fn v1_16(&self, cos: &F32x16) -> F32x16 {
         let mut v1 = [0.0; LANES];
-        for l in 0..LANES {
-            let within = (cos[l] > 0.0) & (cos[l] < 1.0);
-            v1[l] = if within { cos[l] } else { 1.0 };
-        }
+        let within = |cos: f32| select((cos > 0.0) & (cos < 1.0), cos, 1.0);
         match self.distribution {
             Distribution::Ggx => {
                 for l in 0..LANES {
-                    let cos = v1[l];
+                    let cos = within(cos[l]);
                     v1[l] = 1.0 / (cos + (cos * cos + self.alpha_sq * (1.0 - cos * cos)).sqrt());
                 }
             }
             Distribution::Beckmann => {
                 for l in 0..LANES {
-                    let cos = v1[l];
+                    let cos = within(cos[l]);
                     let alpha_sin = self.alpha * (1.0 - cos * cos).sqrt();
-                    // Of both values one is chosen: a branch would not compile to vector code.
+                    // Both values are computed: a branch would not compile to vector code.
                     let (steep, shallow) = (0.5 / cos, walter_v1(cos, alpha_sin));
-                    v1[l] = if cos >= 1.6 * alpha_sin { steep } else { shallow };
+                    v1[l] = select(cos >= 1.6 * alpha_sin, steep, shallow);
                 }
             }
         }

@@ -7,8 +7,7 @@
 //!
 //! Files use only files before them in this order: `microfacet`, `fresnel`, `table` and `albedo`; `base` and `lobe`
 //! (one file per lobe); `model` (data); `bsdf`, `sample`, `bound`, `packet`, `alike16`, `prepared`, `mean` and
-//! `straight` (evaluation);
-//! `colours`, `layers` and `build` (from the scene's materials); `materials` (lookup).
+//! `straight` (evaluation); `colours`, `layers` and `build` (from the scene's materials); `materials` (lookup).
 //!
 //! All directions are in the local shading frame (z = shading normal), point away from the surface and have unit
 //! length: `wo` towards the eye or the previous vertex of the path, `wi` towards the light.

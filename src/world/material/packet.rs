@@ -23,7 +23,7 @@ pub struct Bsdfs16<'m> {
 }
 
 /// Sampled directions; see [`super::lobe::BsdfSample`] for the fields.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 pub struct BsdfSamples16 {
     /// Unit directions.
     pub wi: Vec3x16,
@@ -119,7 +119,7 @@ impl<'m> Bsdfs16<'m> {
     /// Returns [`Bsdf::sample`] in the lanes of `wanted`; other lanes are undefined.
     #[inline]
     pub fn sample(&self, u_lobe: &F32x16, u: &Vec2x16, wanted: u16) -> BsdfSamples16 {
-        let mut s = BsdfSamples16::default();
+        let mut s = BsdfSamples16::NONE;
         for i in 0..LANES {
             let mut wi = cosine_hemisphere(u.get(i));
             s.pdf[i] = wi.z * FRAC_1_PI;
@@ -137,6 +137,16 @@ impl<'m> Bsdfs16<'m> {
 }
 
 impl BsdfSamples16 {
+    /// Samples of paths that all end.
+    pub(super) const NONE: BsdfSamples16 = BsdfSamples16 {
+        wi: Vec3x16::ZERO,
+        weight: Vec3x16::ZERO,
+        pdf: [0.0; LANES],
+        eta: [0.0; LANES],
+        goes_on: [0; LANES],
+        straight: [0; LANES],
+    };
+
     /// Sets a lane to a sample, or ends the path of the lane.
     #[inline]
     pub(super) fn set(&mut self, lane: usize, sample: Option<BsdfSample>) {

@@ -7,7 +7,7 @@ use super::bsdf::{LobeSet, Outgoing};
 use super::lobe::{BsdfSample, Directions16, MAX_LOBES, Sampled16, SeenLobe, ValuePdf16};
 use super::model::Bsdf;
 use super::packet::BsdfSamples16;
-use base::math::{F32x16, LANES, Rgb, Vec2x16, Vec3x16, lanes_in};
+use base::math::{F32x16, LANES, Rgb, Vec2x16, Vec3x16, lanes_in, select};
 use base::sampling::cosine_hemisphere;
 use glam::Vec3;
 use std::f32::consts::{FRAC_1_PI, PI};
@@ -64,15 +64,14 @@ impl<'m> PreparedBsdf<'m> {
     /// Returns [`Bsdf::eval_pdf`] in all lanes.
     #[inline]
     pub fn eval_pdf16(&self, wi: &Vec3x16) -> (Vec3x16, F32x16) {
-        let sum = if self.bsdf.model.kinds.transmit {
-            self.eval_one_by_one(wi)
-        } else if !self.is_seen() {
-            ValuePdf16::default()
-        } else if self.is_lambert() {
-            self.eval_lambert(wi)
-        } else {
-            self.eval_layered(&self.turned(wi))
-        };
+        let mut sum = ValuePdf16::ZERO;
+        if self.bsdf.model.kinds.transmit {
+            self.eval_one_by_one(wi, &mut sum);
+        } else if self.is_lambert() && self.is_seen() {
+            self.eval_lambert(wi, &mut sum);
+        } else if self.is_seen() {
+            self.eval_layered(&self.turned(wi), &mut sum);
+        }
         (sum.value, sum.pdf)
     }
 
@@ -84,7 +83,7 @@ impl<'m> PreparedBsdf<'m> {
             return self.sample_one_by_one(u_lobe, u, wanted);
         }
         if !self.is_seen() {
-            return BsdfSamples16::default();
+            return BsdfSamples16::NONE;
         }
         let mut samples = match self.is_lambert() {
             true => self.sample_lambert(u, wanted),
@@ -98,7 +97,7 @@ impl<'m> PreparedBsdf<'m> {
 
     /// Returns [`Bsdf::eval_lobes`] in all lanes.
     pub fn eval_lobes16(&self, lobes: LobeSet, wi: &Vec3x16) -> Vec3x16 {
-        let mut sum = ValuePdf16::default();
+        let mut sum = ValuePdf16::ZERO;
         if self.bsdf.model.kinds.transmit {
             for l in 0..LANES {
                 sum.value.set(l, self.bsdf.eval_lobes(lobes, self.wo, wi.get(l)));
@@ -127,65 +126,62 @@ impl<'m> PreparedBsdf<'m> {
     }
 
     /// Evaluates directions lane by lane.
-    fn eval_one_by_one(&self, wi: &Vec3x16) -> ValuePdf16 {
-        let mut sum = ValuePdf16::default();
+    fn eval_one_by_one(&self, wi: &Vec3x16, sum: &mut ValuePdf16) {
         for l in 0..LANES {
             let (value, pdf) = self.bsdf.eval_pdf_layered(&self.outgoing, wi.get(l));
             sum.value.set(l, value);
             sum.pdf[l] = pdf;
         }
-        sum
     }
 
     /// Evaluates a Lambertian material.
     #[inline(always)]
-    fn eval_lambert(&self, wi: &Vec3x16) -> ValuePdf16 {
-        let (mut sum, base) = (ValuePdf16::default(), self.bsdf.base);
+    fn eval_lambert(&self, wi: &Vec3x16, sum: &mut ValuePdf16) {
+        let base = self.bsdf.base;
         for l in 0..LANES {
             let cos = wi.z[l] * self.side;
             let lit = cos > 0.0;
-            sum.value.x[l] = if lit { base.x } else { 0.0 };
-            sum.value.y[l] = if lit { base.y } else { 0.0 };
-            sum.value.z[l] = if lit { base.z } else { 0.0 };
-            sum.pdf[l] = if lit { cos * FRAC_1_PI } else { 0.0 };
+            sum.value.x[l] = select(lit, base.x, 0.0);
+            sum.value.y[l] = select(lit, base.y, 0.0);
+            sum.value.z[l] = select(lit, base.z, 0.0);
+            sum.pdf[l] = select(lit, cos * FRAC_1_PI, 0.0);
         }
-        sum
     }
 
     /// Evaluates a material that is more than Lambertian; `wi` is turned.
-    fn eval_layered(&self, wi: &Vec3x16) -> ValuePdf16 {
+    fn eval_layered(&self, wi: &Vec3x16, sum: &mut ValuePdf16) {
         if !self.bsdf.model.kinds.smooth {
-            return self.eval_base(wi, |l| wi.z[l] > 0.0);
+            return self.eval_base(wi, |l| wi.z[l] > 0.0, sum);
         }
         let wo = Vec3x16::splat(self.outgoing.wo);
-        self.eval_between(&Directions16::new(&wo, wi))
+        self.eval_between(&Directions16::new(&wo, wi), sum);
     }
 
-    /// Evaluates base and lobes.
-    fn eval_between(&self, directions: &Directions16) -> ValuePdf16 {
-        let mut sum = self.eval_base(directions.wi, |l| directions.reflects(l));
-        self.add_lobes(LobeSet::ALL, directions, &mut sum);
-        sum
+    /// Evaluates base and lobes; `sum` is zero.
+    #[inline]
+    fn eval_between(&self, directions: &Directions16, sum: &mut ValuePdf16) {
+        self.eval_base(directions.wi, |l| directions.reflects(l), sum);
+        self.add_lobes(LobeSet::ALL, directions, sum);
     }
 
-    /// Evaluates the base in the lanes that are `lit`.
+    /// Evaluates the base in the lanes that are `lit`; `sum` is zero.
     #[inline(always)]
-    fn eval_base(&self, wi: &Vec3x16, lit: impl Fn(usize) -> bool) -> ValuePdf16 {
-        let (mut sum, outgoing) = (ValuePdf16::default(), &self.outgoing);
+    fn eval_base(&self, wi: &Vec3x16, lit: impl Fn(usize) -> bool, sum: &mut ValuePdf16) {
+        let outgoing = &self.outgoing;
         if outgoing.base_probability == 0.0 {
-            return sum;
+            return;
         }
         let passes = self.bsdf.model.base.interface.transmittance16(&wi.z);
         let (base, density) =
             (self.bsdf.base * outgoing.transmittance, outgoing.base_probability * FRAC_1_PI);
         for l in 0..LANES {
-            let passes = if lit(l) { passes[l] } else { 0.0 };
+            let (lit, cos) = (lit(l), wi.z[l]);
+            let passes = select(lit, passes[l], 0.0);
             sum.value.x[l] = base.x * passes;
             sum.value.y[l] = base.y * passes;
             sum.value.z[l] = base.z * passes;
-            sum.pdf[l] = if lit(l) { wi.z[l] * density } else { 0.0 };
+            sum.pdf[l] = select(lit, cos * density, 0.0);
         }
-        sum
     }
 
     /// Adds values and densities of some lobes.
@@ -201,7 +197,7 @@ impl<'m> PreparedBsdf<'m> {
 
     /// Samples directions lane by lane.
     fn sample_one_by_one(&self, u_lobe: &F32x16, u: &Vec2x16, wanted: u16) -> BsdfSamples16 {
-        let mut samples = BsdfSamples16::default();
+        let mut samples = BsdfSamples16::NONE;
         for l in lanes_in(wanted) {
             let sample = self.bsdf.sample_layered(&self.outgoing, u_lobe[l], u.get(l));
             samples.set(l, sample.map(|s| BsdfSample { wi: s.wi * Vec3::new(1.0, 1.0, self.side), ..s }));
@@ -212,7 +208,8 @@ impl<'m> PreparedBsdf<'m> {
     /// Samples a Lambertian material.
     #[inline(always)]
     fn sample_lambert(&self, u: &Vec2x16, wanted: u16) -> BsdfSamples16 {
-        let mut samples = BsdfSamples16 { weight: Vec3x16::splat(self.bsdf.base * PI), ..Default::default() };
+        let mut samples =
+            BsdfSamples16 { weight: Vec3x16::splat(self.bsdf.base * PI), ..BsdfSamples16::NONE };
         for l in 0..LANES {
             let wi = cosine_hemisphere(u.get(l));
             samples.wi.set(l, wi);
@@ -227,7 +224,7 @@ impl<'m> PreparedBsdf<'m> {
     fn sample_layered(&self, u_lobe: &F32x16, u: &Vec2x16, wanted: u16) -> BsdfSamples16 {
         let (base, chosen) = self.choose(u_lobe, wanted);
         let (wo, lobes) = (self.outgoing.wo, &self.bsdf.model.lobes);
-        let mut sampled = Sampled16 { found: base, ..Sampled16::default() };
+        let mut sampled = Sampled16 { found: base, ..Sampled16::NONE };
         if base != 0 {
             for l in 0..LANES {
                 sampled.wi.set(l, cosine_hemisphere(u.get(l)));
@@ -253,15 +250,16 @@ impl<'m> PreparedBsdf<'m> {
     /// Weighs sampled directions, of which those of the lanes `base` have no facet normal.
     fn weighted(&self, sampled: &Sampled16, base: u16) -> BsdfSamples16 {
         let wi = &sampled.wi;
-        let sum = if self.bsdf.model.kinds.smooth {
+        let mut sum = ValuePdf16::ZERO;
+        if self.bsdf.model.kinds.smooth {
             let wo = Vec3x16::splat(self.outgoing.wo);
             let mut directions = Directions16::new(&wo, wi);
             directions.set_half(sampled.found & !base, &sampled.half);
-            self.eval_between(&directions)
+            self.eval_between(&directions, &mut sum);
         } else {
-            self.eval_base(wi, |l| wi.z[l] > 0.0)
-        };
-        let mut samples = BsdfSamples16 { wi: *wi, pdf: sum.pdf, eta: [1.0; LANES], ..Default::default() };
+            self.eval_base(wi, |l| wi.z[l] > 0.0, &mut sum);
+        }
+        let mut samples = BsdfSamples16 { wi: *wi, pdf: sum.pdf, eta: [1.0; LANES], ..BsdfSamples16::NONE };
         for l in 0..LANES {
             let factor = wi.z[l].abs() / sum.pdf[l];
             samples.weight.x[l] = sum.value.x[l] * factor;

@@ -15,7 +15,7 @@ use super::{
 use crate::material::fresnel::Curve;
 use crate::material::microfacet::Microfacets;
 use crate::material::table::{AngleTable, rule};
-use base::math::{LANES, Rgb, Vec3x16};
+use base::math::{LANES, Rgb, Vec3x16, select};
 use glam::{Vec2, Vec3};
 use scene::{Distribution, Fresnel};
 use std::f32::consts::FRAC_PI_2;
@@ -191,9 +191,9 @@ impl AnisotropicLobe {
         let mut masked = self.unit.v1_16(&cos);
         let mut pdf = [0.0; LANES];
         for l in 0..LANES {
-            let density = if d.reflects(l) { density[l] / area } else { 0.0 };
-            masked[l] =
-                if d.reflects(l) { density * seen.masking * (masked[l] * inv_length[l]) } else { 0.0 };
+            let density = select(d.reflects(l), density[l] / area, 0.0);
+            let masking = select(d.reflects(l), masked[l] * inv_length[l], 0.0);
+            masked[l] = density * seen.masking * masking;
             pdf[l] = density * seen.density;
         }
         sum.add(scale, &reflectance, &masked, &pdf);

@@ -11,7 +11,7 @@ use super::{
 };
 use crate::material::fresnel::schlick_weight;
 use crate::material::microfacet::Microfacets;
-use base::math::{LANES, Rgb, Vec3x16};
+use base::math::{LANES, Rgb, Vec3x16, select};
 use glam::{Vec2, Vec3};
 use scene::Distribution;
 use std::f32::consts::{PI, TAU};
@@ -141,10 +141,10 @@ impl ClearCoat {
             let cos_d = d.cos_d[l];
             let reflects = d.reflects(l) & (cos_d > 0.0);
             let density = top / (1.0 + a * d.cos_sq[l]);
-            let cos_i = if d.wi.z[l] < 1.0 { d.wi.z[l] } else { 1.0 };
+            let cos_i = select(d.wi.z[l] < 1.0, d.wi.z[l], 1.0);
             reflectance[l] = Self::reflectance(cos_d);
-            masked[l] = if reflects { density * seen.masking * (2.0 * cos_i * masking[l]) } else { 0.0 };
-            pdf[l] = if reflects { density * seen.density * d.cos_sq[l].sqrt() / cos_d } else { 0.0 };
+            masked[l] = select(reflects, density * seen.masking * (2.0 * cos_i * masking[l]), 0.0);
+            pdf[l] = select(reflects, density * seen.density * d.cos_sq[l].sqrt() / cos_d, 0.0);
         }
         sum.add(scale, &Vec3x16 { x: reflectance, y: reflectance, z: reflectance }, &masked, &pdf);
     }

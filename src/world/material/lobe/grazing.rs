@@ -9,7 +9,7 @@ use super::{
 };
 use crate::material::fresnel::schlick_weight;
 use crate::material::table::{AngleTable, rule};
-use base::math::{LANES, Rgb, Vec3x16};
+use base::math::{LANES, Rgb, Vec3x16, select};
 use base::sampling::cosine_hemisphere;
 use glam::{Vec2, Vec3};
 use std::f32::consts::{FRAC_1_PI, PI};
@@ -145,8 +145,8 @@ impl Grazing {
         for l in 0..LANES {
             let weights = [seen.masking, schlick_weight(d.wi.z[l])];
             let reflected = self.kind.value(weights, d.cos_d[l]);
-            value[l] = if d.reflects(l) { reflected } else { 0.0 };
-            pdf[l] = if d.reflects(l) { d.wi.z[l] * seen.density } else { 0.0 };
+            value[l] = select(d.reflects(l), reflected, 0.0);
+            pdf[l] = select(d.reflects(l), d.wi.z[l] * seen.density, 0.0);
         }
         sum.add(scale, &Vec3x16::splat(Vec3::ONE), &value, &pdf);
     }

@@ -7,7 +7,7 @@
 //! angle between wo and h is at most half the sum of the two inclinations.
 
 use super::{DirectionBound, DirectionBounds16};
-use base::math::{F32x16, LANES, Vec3x16};
+use base::math::{F32x16, LANES, Vec3x16, select};
 use glam::Vec3;
 
 /// Rounding error of a cosine or of a product of two. It matters for α below 0.01.
@@ -62,13 +62,13 @@ impl Directions16<'_> {
             let (wo, wi) = (wo.get(l), wi.get(l));
             let h = wo + wi;
             let length_sq = h.length_squared();
-            let inverse = if length_sq > MIN_SUM_SQ { 1.0 / length_sq } else { 0.0 };
+            let inverse = select(length_sq > MIN_SUM_SQ, 1.0 / length_sq, 0.0);
             all.x_sq[l] = h.x * h.x * inverse;
             all.y_sq[l] = h.y * h.y * inverse;
             all.sin_sq[l] = (h.x * h.x + h.y * h.y) * inverse;
             all.cos_sq[l] = h.z * h.z * inverse;
             let d = wo.dot(h) * inverse.sqrt();
-            all.cos_d[l] = if d < 1.0 { d } else { 1.0 };
+            all.cos_d[l] = select(d < 1.0, d, 1.0);
         }
         all
     }
@@ -78,14 +78,12 @@ impl Directions16<'_> {
     pub fn set_half(&mut self, mask: u16, half: &Vec3x16) {
         for l in 0..LANES {
             let (wo, h) = (self.wo.get(l), half.get(l));
-            let set = mask >> l & 1 != 0;
-            let d = wo.dot(h);
-            self.x_sq[l] = if set { h.x * h.x } else { self.x_sq[l] };
-            self.y_sq[l] = if set { h.y * h.y } else { self.y_sq[l] };
-            self.sin_sq[l] = if set { h.x * h.x + h.y * h.y } else { self.sin_sq[l] };
-            self.cos_sq[l] = if set { h.z * h.z } else { self.cos_sq[l] };
-            let d = if d < 1.0 { d } else { 1.0 };
-            self.cos_d[l] = if set { d } else { self.cos_d[l] };
+            let (set, d) = (mask >> l & 1 != 0, wo.dot(h));
+            self.x_sq[l] = select(set, h.x * h.x, self.x_sq[l]);
+            self.y_sq[l] = select(set, h.y * h.y, self.y_sq[l]);
+            self.sin_sq[l] = select(set, h.x * h.x + h.y * h.y, self.sin_sq[l]);
+            self.cos_sq[l] = select(set, h.z * h.z, self.cos_sq[l]);
+            self.cos_d[l] = select(set, select(d < 1.0, d, 1.0), self.cos_d[l]);
         }
     }
 

@@ -23,14 +23,14 @@ pub(in crate::material) struct SeenLobe {
 }
 
 /// Values and densities in sixteen lanes.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 pub(in crate::material) struct ValuePdf16 {
     pub value: Vec3x16,
     pub pdf: F32x16,
 }
 
 /// Directions that lobes sampled, in sixteen lanes.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 pub(in crate::material) struct Sampled16 {
     pub wi: Vec3x16,
     /// Unit normals of the facets that reflect `wo` into `wi`.
@@ -40,6 +40,9 @@ pub(in crate::material) struct Sampled16 {
 }
 
 impl ValuePdf16 {
+    /// Zero in all lanes.
+    pub const ZERO: ValuePdf16 = ValuePdf16 { value: Vec3x16::ZERO, pdf: [0.0; LANES] };
+
     /// Adds scale · reflectance · `weight` to the values, and `pdf` to the densities.
     #[inline(always)]
     pub(super) fn add(&mut self, scale: Rgb, reflectance: &Vec3x16, weight: &F32x16, pdf: &F32x16) {
@@ -53,6 +56,9 @@ impl ValuePdf16 {
 }
 
 impl Sampled16 {
+    /// No directions.
+    pub const NONE: Sampled16 = Sampled16 { wi: Vec3x16::ZERO, half: Vec3x16::ZERO, found: 0 };
+
     /// Sets the lanes of a mask to the reflections of `wo` on the facets `half`. Lanes whose reflection is below the
     /// surface have no direction.
     #[inline]

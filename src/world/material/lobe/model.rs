@@ -222,8 +222,8 @@ impl LobeModel {
         }
     }
 
-    /// Prepares a lobe, chosen with `probability`, for `wo` on the side of the normal. Lobes that transmit light have no
-    /// such form.
+    /// Prepares a lobe for `wo` on the side of the normal. `probability` is that of choosing the lobe. Lobes that
+    /// transmit light have no such form.
     #[inline]
     pub fn seen(&self, probability: f32, wo: Vec3) -> SeenLobe {
         match self {

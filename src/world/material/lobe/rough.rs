@@ -14,7 +14,7 @@ use super::{
 use crate::material::fresnel::Curve;
 use crate::material::microfacet::Microfacets;
 use crate::material::table::{ANGLES, AngleTable};
-use base::math::{LANES, Rgb, Vec2x16, Vec3x16, luminance};
+use base::math::{LANES, Rgb, Vec2x16, Vec3x16, luminance, select};
 use glam::{Vec2, Vec3};
 use scene::Fresnel;
 use std::sync::Arc;
@@ -163,7 +163,7 @@ impl RoughLobe {
         let masking = self.facets.v1_16(&d.wi.z);
         for l in 0..LANES {
             masked[l] *= lanes.masking[l] * masking[l];
-            masked[l] = if d.sin_sq[l] + d.cos_sq[l] > 0.0 { masked[l] } else { 0.0 };
+            masked[l] = select(d.sin_sq[l] + d.cos_sq[l] > 0.0, masked[l], 0.0);
         }
         lanes.add(sum, &reflectance, &masked);
     }
@@ -184,8 +184,8 @@ impl RoughLobe {
         let mut pdf = [0.0; LANES];
         for l in 0..LANES {
             let reflects = d.reflects(l);
-            masked[l] = if reflects { density[l] * seen.masking * masked[l] } else { 0.0 };
-            pdf[l] = if reflects { density[l] * seen.density } else { 0.0 };
+            masked[l] = select(reflects, density[l] * seen.masking * masked[l], 0.0);
+            pdf[l] = select(reflects, density[l] * seen.density, 0.0);
         }
         sum.add(scale, &reflectance, &masked, &pdf);
     }

@@ -12,7 +12,9 @@ fn all_materials() -> Vec<Material> {
     all.push(Material { name: "gaps in paint".into(), ..masked(0.3, lambert(PAINT)) });
     all.push(Material { name: "coat alone".into(), lobes: Vec::new(), ..plastic(false) });
     all.push(blend(0.4, rough_glass(Distribution::Ggx, 0.2, 1.5), lambert(PAINT)));
-    all.push(lambert(Rgb::ZERO));
+    let (reflectance, transmittance) = (constant(Rgb::ONE), constant(PAINT));
+    let sheet = Lobe::Dielectric { eta: 1.5, thin: true, reflectance, transmittance };
+    all.extend([lambert(Rgb::ZERO), material("sheet", Rgb::ZERO, None, sheet)]);
     let backs = all.clone().into_iter().map(|material| {
         let name = format!("{}, two-sided {}", material.name, !material.two_sided);
         Material { name, two_sided: !material.two_sided, ..material }
@@ -68,10 +70,14 @@ fn error_of(got: Rgb, exact: Rgb) -> f32 {
     error(got.x, exact.x).max(error(got.y, exact.y)).max(error(got.z, exact.z))
 }
 
+/// Relative difference that rounding of the facet's normal makes, at most where the clear coat's density divides by a
+/// small difference. Most lobes keep to 1e-6, and Beckmann's to 1e-5, because of its exponents.
+const TOLERANCE: f32 = 1e-4;
+
 #[test]
 fn lanes_have_the_scalar_values_and_densities() {
     for material in all_materials() {
-        let (mut random, mut most) = (Random(5), 0.0f32);
+        let mut random = Random(5);
         with_bsdf(&material, |bsdf| {
             for wo in outgoing(&mut random) {
                 let prepared = PreparedBsdf::new(bsdf, wo);
@@ -94,22 +100,20 @@ fn lanes_have_the_scalar_values_and_densities() {
                         ];
                         let name = &material.name;
                         assert!(
-                            errors.iter().all(|&e| e < 1e-4),
+                            errors.iter().all(|&e| e < TOLERANCE),
                             "{name} {wo} {wi}: {errors:?}, {value} {pdf}"
                         );
-                        most = errors.into_iter().fold(most, f32::max);
                     }
                 }
             }
         });
-        println!("{}: {most:e}", material.name);
     }
 }
 
 #[test]
 fn lanes_are_sampled_as_single_directions_are() {
     for material in all_materials() {
-        let (mut random, mut most) = (Random(8), 0.0f32);
+        let mut random = Random(8);
         with_bsdf(&material, |bsdf| {
             for wo in outgoing(&mut random) {
                 let prepared = PreparedBsdf::new(bsdf, wo);
@@ -132,13 +136,11 @@ fn lanes_are_sampled_as_single_directions_are() {
                         let pdf = if exact.delta { exact.pdf } else { samples.pdf[lane] };
                         let weight = samples.weight.get(lane);
                         let errors = [error_of(weight, exact.weight), error(pdf, exact.pdf)];
-                        assert!(errors.iter().all(|&e| e < 1e-4), "{name} {wo}: {errors:?}, {exact:?}");
-                        most = errors.into_iter().fold(most, f32::max);
+                        assert!(errors.iter().all(|&e| e < TOLERANCE), "{name} {wo}: {errors:?}, {exact:?}");
                     }
                 }
             }
         });
-        println!("{}: {most:e}", material.name);
     }
 }
 
