@@ -3,8 +3,9 @@
 //! Loops over lanes compile to vector code. Lane by lane are: materials that transmit light, gaps seen from behind, and
 //! the sampling of lobes other than those of GGX facets.
 
-use super::bsdf::{LobeSet, Outgoing};
+use super::bsdf::Outgoing;
 use super::lobe::{BsdfSample, Directions16, MAX_LOBES, Sampled16, SeenLobe, ValuePdf16};
+use super::lobe_set::LobeSet;
 use super::model::Bsdf;
 use super::packet::BsdfSamples16;
 use base::math::{F32x16, LANES, Rgb, Vec2x16, Vec3x16, lanes_in, select};
