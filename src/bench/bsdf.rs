@@ -1,14 +1,14 @@
-//! Materials: evaluations, samples and bounds per second.
+//! Materials: evaluations, samples and bounds per second, of one direction and of sixteen at once.
 
 use super::lit_scene::Dice;
 use super::measure::{Case, Clock, Experiment};
 use super::{Benchmark, Context, Kind, Table};
-use base::math::Rgb;
+use base::math::{LANES, Rgb, Vec2x16, Vec3x16};
 use base::sampling::uniform_sphere;
 use glam::{Vec2, Vec3};
 use scene::{Coat, Distribution, Fresnel, Lobe, Material, MaterialId, Reflectance, Roughness, Scene};
 use std::hint::black_box;
-use world::material::{Bsdf, DirectionBound, Materials};
+use world::material::{Bsdf, DirectionBound, Materials, PreparedBsdf};
 
 pub(super) const BENCHMARK: Benchmark = Benchmark {
     name: "bsdf",
@@ -44,6 +44,7 @@ fn run(context: &Context) -> Vec<Table> {
             black_box(bsdf.bound(wo, &bound));
         }),
     ];
+    let packets = Packets::new(&directions);
     let (scene, materials, pair) = (&scene, &materials, &pair);
     let mut cases = Vec::new();
     for (what, call) in calls {
@@ -58,7 +59,7 @@ fn run(context: &Context) -> Vec<Table> {
             }));
         }
     }
-    let experiment = Experiment {
+    let single = Experiment {
         title: "Materials",
         about: "Ratio to a diffuse surface.",
         labels: &["call", "material"],
@@ -68,7 +69,82 @@ fn run(context: &Context) -> Vec<Table> {
         clock: Clock::Thread,
         cases,
     };
-    vec![experiment.measure(&context.settings)]
+    let together = Experiment {
+        title: "Materials in sixteen directions",
+        about: "Directions from one viewpoint, with its preparation. Ratio to one direction at a time.",
+        labels: &["call", "material", "directions"],
+        cases: cases_of_packets(scene, materials, &packets),
+        ..single
+    };
+    vec![single.measure(&context.settings), together.measure(&context.settings)]
+}
+
+/// Returns the cases of sixteen directions at once, each after that of one at a time.
+fn cases_of_packets<'a>(scene: &'a Scene, materials: &'a Materials, packets: &'a Packets) -> Vec<Case<'a>> {
+    let mut cases = Vec::new();
+    for (i, material) in scene.materials.iter().enumerate() {
+        let bsdf = materials.at(MaterialId(i as u32), Vec2::ZERO);
+        let mut case = |labels: [&str; 3], against, work: fn(&Bsdf, &Packets)| {
+            cases.push(Case::new(&labels, against, DIRECTIONS as f64, move || work(&bsdf, packets)));
+        };
+        let first = 4 * i;
+        case(["evaluate", &material.name, "1"], first, |bsdf, packets| {
+            for (wo, wi, _) in packets.each() {
+                (0..LANES).for_each(|l| {
+                    black_box(bsdf.eval_pdf(wo, wi.get(l)));
+                });
+            }
+        });
+        case(["evaluate", &material.name, "16"], first, |bsdf, packets| {
+            for (wo, wi, _) in packets.each() {
+                black_box(&PreparedBsdf::new(*bsdf, wo).eval_pdf16(wi));
+            }
+        });
+        case(["sample", &material.name, "1"], first + 2, |bsdf, packets| {
+            for (wo, wi, u) in packets.each() {
+                (0..LANES).for_each(|l| {
+                    black_box(bsdf.sample(wo, wi.z[l], u.get(l)));
+                });
+            }
+        });
+        case(["sample", &material.name, "16"], first + 2, |bsdf, packets| {
+            for (wo, wi, u) in packets.each() {
+                black_box(&PreparedBsdf::new(*bsdf, wo).sample16(&wi.z, u, !0));
+            }
+        });
+    }
+    cases
+}
+
+/// Directions in packets, each with a direction of view.
+struct Packets {
+    wo: Vec<Vec3>,
+    wi: Vec<Vec3x16>,
+    /// Numbers from 0 to 1.
+    u: Vec<Vec2x16>,
+}
+
+impl Packets {
+    /// Packs directions.
+    fn new(directions: &[Vec3]) -> Packets {
+        let mut packets = Packets { wo: Vec::new(), wi: Vec::new(), u: Vec::new() };
+        for (i, packet) in directions.chunks_exact(LANES).enumerate() {
+            let (mut wi, mut u) = (Vec3x16::ZERO, Vec2x16::default());
+            for (lane, v) in packet.iter().enumerate() {
+                wi.set(lane, *v);
+                u.set(lane, Vec2::new(0.5 + 0.5 * v.x, 0.5 + 0.5 * v.y));
+            }
+            packets.wo.push(directions[(i * 7 + 1) % directions.len()]);
+            packets.wi.push(wi);
+            packets.u.push(u);
+        }
+        packets
+    }
+
+    /// Lists direction of view, incident directions and numbers of each packet.
+    fn each(&self) -> impl Iterator<Item = (Vec3, &Vec3x16, &Vec2x16)> {
+        (0..self.wo.len()).map(|i| (self.wo[i], &self.wi[i], &self.u[i]))
+    }
 }
 
 /// Returns a material of each kind.

@@ -156,9 +156,12 @@ impl World {
             let covered = || self.covered(s.mesh[i], s.triangle[i], s.footprint.get(i));
             self.materials.at_coordinates(id, uv, covered)
         };
-        let (mut mean, mut taken) = (MeanBsdf::new(bsdf(first)), 1 << first);
+        let (first_bsdf, mut taken) = (bsdf(first), 1 << first);
+        let mut mean = MeanBsdf::new(first_bsdf);
         for lane in lanes_in(lanes & !taken) {
-            if mean.add(&bsdf(lane)) {
+            let bsdf = bsdf(lane);
+            if bsdf.same_lobes(&first_bsdf) && bsdf.coat() == first_bsdf.coat() {
+                mean.add(&bsdf);
                 taken |= 1 << lane;
             }
         }

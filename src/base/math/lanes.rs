@@ -16,7 +16,7 @@ pub type F32x16 = [f32; LANES];
 pub type U32x16 = [u32; LANES];
 
 /// One point of the plane per lane.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
 pub struct Vec2x16 {
     /// First coordinates.
@@ -26,7 +26,7 @@ pub struct Vec2x16 {
 }
 
 /// One vector or colour per lane.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
 pub struct Vec3x16 {
     /// First coordinates.
@@ -35,6 +35,21 @@ pub struct Vec3x16 {
     pub y: F32x16,
     /// Third coordinates.
     pub z: F32x16,
+}
+
+// The derived forms would call a function for each row.
+impl Default for Vec2x16 {
+    #[inline(always)]
+    fn default() -> Vec2x16 {
+        Vec2x16 { x: [0.0; LANES], y: [0.0; LANES] }
+    }
+}
+
+impl Default for Vec3x16 {
+    #[inline(always)]
+    fn default() -> Vec3x16 {
+        Vec3x16::ZERO
+    }
 }
 
 impl Vec2x16 {
@@ -90,13 +105,13 @@ impl Vec3x16 {
 
     /// Sets the lanes in which `bits` are set to a vector (see [`blend`]).
     #[inline(always)]
-    pub fn blend(&mut self, bits: &U32x16, v: Vec3) {
-        self.blend16(bits, &Vec3x16::splat(v));
+    pub fn fill(&mut self, bits: &U32x16, v: Vec3) {
+        self.blend(bits, &Vec3x16::splat(v));
     }
 
     /// Sets the lanes in which `bits` are set to the vectors of other lanes (see [`blend`]).
     #[inline(always)]
-    pub fn blend16(&mut self, bits: &U32x16, v: &Vec3x16) {
+    pub fn blend(&mut self, bits: &U32x16, v: &Vec3x16) {
         blend(&mut self.x, bits, &v.x);
         blend(&mut self.y, bits, &v.y);
         blend(&mut self.z, bits, &v.z);
@@ -115,6 +130,14 @@ impl Vec3x16 {
         self.y[lane] = v.y;
         self.z[lane] = v.z;
     }
+}
+
+/// Returns `yes` if the condition holds, else `no`, without a branch.
+///
+/// Loops with `if` may compile to masked stores, whose values later loads await for dozens of cycles.
+#[inline(always)]
+pub fn select(condition: bool, yes: f32, no: f32) -> f32 {
+    std::hint::select_unpredictable(condition, yes, no)
 }
 
 /// Returns the mask of the first `count` lanes, at most all.

@@ -2,6 +2,7 @@
 //! numbers.
 
 mod cone;
+mod exp;
 mod frame;
 mod lanes;
 mod quadrature;
@@ -9,10 +10,11 @@ mod real;
 mod unit;
 
 pub use cone::Cone;
+pub use exp::lane_exp;
 pub use frame::Frame;
 pub use lanes::{
     F32x16, LANES, U32x16, Vec2x16, Vec3x16, bits_of, blend, blend_u32, first_lanes, lanes_in, lanes_with,
-    mask_of,
+    mask_of, select,
 };
 pub use quadrature::gauss_legendre;
 pub use real::{F32x8, Real, WIDTH};

@@ -5,12 +5,12 @@
 //! sampled as finely as by single paths. The rules of vertices hold here, too (`vertex`).
 
 use super::counts::RayCounts;
-use super::groups::{Group, blend, fill};
+use super::groups::Group;
 use super::guided::{Guided, LaneVertex};
 use super::packet::{Packet, PathStage};
 use super::policy::{ChainEnd, LightSamples, PathPolicy};
 use super::vertex::{continue_cone, first_pair, next_class, segments};
-use base::math::{F32x16, LANES, Rgb, Vec3x16, lanes_in, mask_of};
+use base::math::{F32x16, LANES, Rgb, Vec3x16, blend, lanes_in, mask_of};
 use base::sampling::power_heuristic;
 use world::light::{DirectSamples16, Receivers16};
 use world::material::LobeSet;
@@ -61,7 +61,7 @@ impl<'w> GroupedVertices<'_, 'w> {
         let (world, surfaces) = (self.world, self.surfaces);
         let (mut all, mut smooth, mut lambert) = (0, 0, 0);
         for group in self.groups.iter_mut() {
-            fill(&mut packet.normal, group.lanes, group.normal);
+            packet.normal.fill(&group.bits, group.normal);
             all |= group.lanes;
             smooth |= if group.bsdf.bsdf().has_smooth() { group.lanes } else { 0 };
             lambert |= if group.bsdf.is_lambert() { group.lanes } else { 0 };
@@ -170,12 +170,9 @@ impl<'w> GroupedVertices<'_, 'w> {
                 wi.set(i, group.frame.to_local(lights.direction.get(i)));
             }
             let (f, p) = group.bsdf.eval_pdf16(&wi);
-            blend(&mut value, group.lanes, &f);
-            for i in 0..LANES {
-                let own = group.lanes >> i & 1 != 0;
-                pdf[i] = if own { p[i] } else { pdf[i] };
-                cos[i] = if own { wi.z[i] } else { cos[i] };
-            }
+            value.blend(&group.bits, &f);
+            blend(&mut pdf, &group.bits, &p);
+            blend(&mut cos, &group.bits, &wi.z);
         }
         for i in lanes_in(useful & step.guided.lanes & !step.alone) {
             let (x, n) = (self.surfaces.position.get(i), packet.normal.get(i));
@@ -239,11 +236,9 @@ impl<'w> GroupedVertices<'_, 'w> {
                     throughput.set(lane, weight * factor);
                 }
             }
-            blend(&mut sampled.direction, lanes, &direction);
-            blend(&mut sampled.throughput, lanes, &throughput);
-            for i in 0..LANES {
-                sampled.pdf[i] = if lanes >> i & 1 != 0 { samples.pdf[i] } else { sampled.pdf[i] };
-            }
+            sampled.direction.blend(&group.bits, &direction);
+            sampled.throughput.blend(&group.bits, &throughput);
+            blend(&mut sampled.pdf, &group.bits, &samples.pdf);
             sampled.goes_on |= lanes & samples.going_on();
         }
         sampled

@@ -7,7 +7,7 @@
 //! Errors: the mean of BSDFs seen along the mean direction differs from the mean of values. Normals may differ by an
 //! angle that is small against the sharpest lobe.
 
-use base::math::{Frame, LANES, U32x16, Vec3x16, lanes_in, mask_of};
+use base::math::{Frame, LANES, U32x16, Vec3x16, bits_of, lanes_in, mask_of};
 use glam::Vec3;
 use scene::MaterialId;
 use world::material::{LobeSet, PreparedBsdf};
@@ -31,6 +31,8 @@ const MAX_HEIGHT: f32 = 0.5;
 /// Lanes that share one BSDF.
 pub(super) struct Group<'w> {
     pub lanes: u16,
+    /// All bits in its lanes, for [`base::math::blend`].
+    pub bits: U32x16,
     /// BSDF of the whole group, seen along `out`.
     pub bsdf: PreparedBsdf<'w>,
     /// Lobes that chains follow.
@@ -92,6 +94,7 @@ pub(super) fn collect<'w>(world: &'w World, hits: &FirstHits16, lanes: u16, grou
         let side = if front { 1.0 } else { -1.0 };
         groups.push(Group {
             lanes,
+            bits: bits_of(lanes),
             bsdf: PreparedBsdf::new(bsdf, frame.to_local(out)),
             chained: LobeSet::default(),
             normal: frame.normal * side,
@@ -142,26 +145,4 @@ impl FirstHits16<'_> {
 fn min_cos(world: &World, id: MaterialId) -> f32 {
     let angle = ALPHA_SHARE * world.materials.min_alpha(id);
     (1.0 - 0.5 * angle * angle).max(MIN_COS)
-}
-
-/// Sets the lanes of a mask to a vector.
-#[inline(always)]
-pub(super) fn fill(rows: &mut Vec3x16, lanes: u16, v: Vec3) {
-    for i in 0..LANES {
-        let set = lanes >> i & 1 != 0;
-        rows.x[i] = if set { v.x } else { rows.x[i] };
-        rows.y[i] = if set { v.y } else { rows.y[i] };
-        rows.z[i] = if set { v.z } else { rows.z[i] };
-    }
-}
-
-/// Sets the lanes of a mask to those of another packet.
-#[inline(always)]
-pub(super) fn blend(rows: &mut Vec3x16, lanes: u16, from: &Vec3x16) {
-    for i in 0..LANES {
-        let set = lanes >> i & 1 != 0;
-        rows.x[i] = if set { from.x[i] } else { rows.x[i] };
-        rows.y[i] = if set { from.y[i] } else { rows.y[i] };
-        rows.z[i] = if set { from.z[i] } else { rows.z[i] };
-    }
 }

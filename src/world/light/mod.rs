@@ -23,12 +23,11 @@ mod triangles;
 
 pub use area::{AreaLight, AreaPoint, emitted};
 pub use delta::{delta_irradiance, delta_power, spot_falloff};
-pub use direct::DirectSample;
+pub use direct::{DirectSample, DirectSamples16};
 pub use distribution::DiscreteDistribution;
 pub use emitters::Emitters;
 pub use environment::{EnvironmentLight, EnvironmentSample, LearnedSky, SkyObservations};
 pub use learned::Learned;
-pub use packet::DirectSamples16;
 pub use receivers::Receivers16;
 pub use regions::Regions;
 pub use tree::{EmitterObservations, LearnedEmitters};

@@ -121,9 +121,9 @@ impl Emitters {
         let sky = at.learned.and_then(|learned| learned.sky.as_ref()).map(|sky| (sky, at.position));
         let found = environment.sample16(u, wanted, sky);
         let bits = bits_of(wanted);
-        samples.direction.blend16(&bits, &found.direction);
-        samples.radiance.blend16(&bits, &found.radiance);
-        samples.normal.blend(&bits, Vec3::ZERO);
+        samples.direction.blend(&bits, &found.direction);
+        samples.radiance.blend(&bits, &found.radiance);
+        samples.normal.fill(&bits, Vec3::ZERO);
         blend(&mut samples.distance, &bits, &[f32::INFINITY; LANES]);
         let (mut pdf, mut useful) = ([0.0; LANES], [0; LANES]);
         for i in 0..LANES {

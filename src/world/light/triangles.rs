@@ -42,7 +42,7 @@ impl Triangles16 {
         blend(&mut self.barycentric.y, &bits, &u.y);
         blend(&mut self.area, &bits, &[light.area; LANES]);
         blend_u32(&mut self.two_sided, &bits, &[u32::from(light.emission.two_sided); LANES]);
-        self.radiance.blend(&bits, light.emission.radiance);
+        self.radiance.fill(&bits, light.emission.radiance);
         let mut left = lanes;
         while left != 0 {
             let triangle = index[left.trailing_zeros() as usize];
@@ -55,10 +55,10 @@ impl Triangles16 {
                 continue;
             }
             let bits = bits_of(here);
-            self.corner.blend(&bits, corner);
-            self.edges[0].blend(&bits, e1);
-            self.edges[1].blend(&bits, e2);
-            self.normal.blend(&bits, normal);
+            self.corner.fill(&bits, corner);
+            self.edges[0].fill(&bits, e1);
+            self.edges[1].fill(&bits, e2);
+            self.normal.fill(&bits, normal);
         }
     }
 

@@ -80,10 +80,24 @@ impl CoatInterface {
     /// Returns [`CoatInterface::transmittance`] in all lanes. Cosines below 0 count as 0.
     #[inline]
     pub fn transmittance16(&self, cos: &F32x16) -> F32x16 {
+        // One loop per kind: a choice within the loop would not compile to vector code.
         let mut passes = [1.0; LANES];
-        if *self != CoatInterface::None {
-            for l in 0..LANES {
-                passes[l] = self.transmittance(cos[l].clamp(0.0, 1.0));
+        match self {
+            CoatInterface::None => {}
+            CoatInterface::Smooth(eta) => {
+                for l in 0..LANES {
+                    passes[l] = 1.0 - fresnel::dielectric(cos[l].clamp(0.0, 1.0), *eta);
+                }
+            }
+            CoatInterface::Burley => {
+                for l in 0..LANES {
+                    passes[l] = 1.0 - 0.5 * fresnel::schlick_weight(cos[l].clamp(0.0, 1.0));
+                }
+            }
+            CoatInterface::Rough(coat) => {
+                for l in 0..LANES {
+                    passes[l] = coat.transmittance.lookup(cos[l]);
+                }
             }
         }
         passes

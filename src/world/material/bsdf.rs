@@ -3,15 +3,12 @@
 //! Units: `eval` is 1/sr, without the cosine; `pdf` is per solid angle.
 
 use super::lobe::{Directions, DullLobe, LobeModel, MAX_LOBES, ReflectedLobe, mean};
+use super::lobe_set::LobeSet;
 use super::model::Bsdf;
 use base::math::Rgb;
 use glam::Vec3;
 use scene::MaterialId;
 use std::f32::consts::{FRAC_1_PI, PI};
-
-/// Set of some of a material's lobes.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct LobeSet(u8);
 
 /// Direction towards the eye and the quantities that depend on it alone.
 #[derive(Clone, Copy, Debug)]
@@ -24,20 +21,6 @@ pub(super) struct Outgoing {
     pub base_probability: f32,
     /// Probabilities of sampling the lobes.
     pub probabilities: [f32; MAX_LOBES],
-}
-
-impl LobeSet {
-    /// Returns true if the set is empty.
-    #[inline]
-    pub fn is_empty(self) -> bool {
-        self.0 == 0
-    }
-
-    /// Returns true if the lobe in a slot is in the set.
-    #[inline(always)]
-    fn has(self, slot: usize) -> bool {
-        self.0 >> slot & 1 != 0
-    }
 }
 
 impl<'m> Bsdf<'m> {

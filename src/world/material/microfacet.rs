@@ -11,7 +11,7 @@
 //! exact function, which is the one that visible normals follow. The weight of a sample accounts for the difference (up
 //! to 0.35 %).
 
-use base::math::{F32x16, LANES, Rgb};
+use base::math::{F32x16, LANES, Rgb, Vec2x16, Vec3x16, lane_exp, select};
 use base::sampling::uniform_disk;
 use glam::{Vec2, Vec3};
 use scene::Distribution;
@@ -22,6 +22,12 @@ const FRAC_1_SQRT_PI: f32 = 0.564_189_6;
 
 /// Minimum roughness α. A perfect mirror is a lobe of its own.
 pub(super) const MIN_ALPHA: f32 = 1e-4;
+
+/// Minimum squared cosine of a facet, which keeps cos⁴ representable. Beckmann's D is 0 to single precision there.
+const MIN_COS_SQ: f32 = 1e-16;
+
+/// Exponent beyond which Beckmann's D counts as 0, because subnormal numbers would only be slow.
+const MAX_EXPONENT: f32 = 50.0;
 
 /// Microfacet distribution of a given roughness.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -54,11 +60,9 @@ impl Microfacets {
                 FRAC_1_PI / (a2 * t * t)
             }
             Distribution::Beckmann => {
-                // The floor keeps cos⁴ representable. D is 0 to single precision there, and below e⁻⁵⁰, where subnormal
-                // numbers would only be slow.
-                let cos_sq = cos_sq.max(1e-16);
+                let cos_sq = cos_sq.max(MIN_COS_SQ);
                 let exponent = sin_sq / (a2 * cos_sq);
-                if exponent > 50.0 {
+                if exponent > MAX_EXPONENT {
                     return 0.0;
                 }
                 (-exponent).exp() * FRAC_1_PI / (a2 * cos_sq * cos_sq)
@@ -83,9 +87,24 @@ impl Microfacets {
     /// Returns [`Microfacets::density_from`] in all lanes.
     #[inline]
     pub fn density16(&self, sin_sq: &F32x16, cos_sq: &F32x16) -> F32x16 {
+        let (a2, inverse) = (self.alpha_sq, 1.0 / self.alpha_sq);
         let mut density = [0.0; LANES];
-        for l in 0..LANES {
-            density[l] = self.density_from(sin_sq[l], cos_sq[l]);
+        match self.distribution {
+            Distribution::Ggx => {
+                for l in 0..LANES {
+                    let t = sin_sq[l] * inverse + cos_sq[l];
+                    density[l] = FRAC_1_PI / (a2 * t * t);
+                }
+            }
+            Distribution::Beckmann => {
+                for l in 0..LANES {
+                    let cos_sq = select(cos_sq[l] > MIN_COS_SQ, cos_sq[l], MIN_COS_SQ);
+                    let exponent = sin_sq[l] * inverse / cos_sq;
+                    let inside = exponent <= MAX_EXPONENT;
+                    let gauss = lane_exp(select(inside, -exponent, -MAX_EXPONENT));
+                    density[l] = select(inside, gauss * FRAC_1_PI / (a2 * cos_sq * cos_sq), 0.0);
+                }
+            }
         }
         density
     }
@@ -111,10 +130,34 @@ impl Microfacets {
                 if cos >= 1.6 * alpha_sin {
                     return 0.5 / cos;
                 }
-                let a = cos / alpha_sin;
-                0.5 * (3.535 + 2.181 * a) / ((1.0 + (2.276 + 2.577 * a) * a) * alpha_sin)
+                walter_v1(cos, alpha_sin)
             }
         }
+    }
+
+    /// Returns [`Microfacets::v1`] in all lanes. Cosines beyond 0..1 count as 1.
+    #[inline]
+    pub fn v1_16(&self, cos: &F32x16) -> F32x16 {
+        let mut v1 = [0.0; LANES];
+        let within = |cos: f32| select((cos > 0.0) & (cos < 1.0), cos, 1.0);
+        match self.distribution {
+            Distribution::Ggx => {
+                for l in 0..LANES {
+                    let cos = within(cos[l]);
+                    v1[l] = 1.0 / (cos + (cos * cos + self.alpha_sq * (1.0 - cos * cos)).sqrt());
+                }
+            }
+            Distribution::Beckmann => {
+                for l in 0..LANES {
+                    let cos = within(cos[l]);
+                    let alpha_sin = self.alpha * (1.0 - cos * cos).sqrt();
+                    // Both values are computed: a branch would not compile to vector code.
+                    let (steep, shallow) = (0.5 / cos, walter_v1(cos, alpha_sin));
+                    v1[l] = select(cos >= 1.6 * alpha_sin, steep, shallow);
+                }
+            }
+        }
+        v1
     }
 
     /// Returns the V1 that normalises the density of visible normals.
@@ -158,6 +201,21 @@ impl Microfacets {
         }
     }
 
+    /// Samples facet normals seen from `wo` in all lanes as [`Microfacets::sample_visible`] does; `None` unless the
+    /// distribution is GGX.
+    #[inline]
+    pub fn ggx_normals16(&self, wo: Vec3, u: &Vec2x16) -> Option<Vec3x16> {
+        if self.distribution != Distribution::Ggx {
+            return None;
+        }
+        let stretched = Vec3::new(self.alpha * wo.x, self.alpha * wo.y, wo.z).normalize();
+        let mut normals = Vec3x16::ZERO;
+        for l in 0..LANES {
+            normals.set(l, self.visible_ggx_normal(stretched, u.get(l)));
+        }
+        Some(normals)
+    }
+
     /// Integrates the mean of `f(h)` over the facet normals seen from `wo`, by a product rule. `rule` has an even
     /// number of nodes, `wo` lies in the xz plane, and `f` is symmetric about it, so that one half is enough.
     pub fn mean_over_visible(&self, wo: Vec3, rule: &[(f32, f32)], f: impl Fn(Vec3) -> Rgb) -> Rgb {
@@ -181,7 +239,7 @@ impl Microfacets {
     }
 
     /// Samples a visible normal of the unit hemisphere seen from `stretched`, unstretched.
-    #[inline]
+    #[inline(always)]
     fn visible_ggx_normal(&self, stretched: Vec3, u: Vec2) -> Vec3 {
         let across = Vec3::new(-stretched.y, stretched.x, 0.0).try_normalize().unwrap_or(Vec3::Y);
         let up = stretched.cross(across);
@@ -203,6 +261,13 @@ impl Microfacets {
         let y = sin_phi * along + cos_phi * across;
         Vec3::new(-self.alpha * x, -self.alpha * y, 1.0).normalize()
     }
+}
+
+/// Returns Walter's fit of Beckmann's V1, for cosines below 1.6 `alpha_sin`.
+#[inline(always)]
+fn walter_v1(cos: f32, alpha_sin: f32) -> f32 {
+    let a = cos / alpha_sin;
+    0.5 * (3.535 + 2.181 * a) / ((1.0 + (2.276 + 2.577 * a) * a) * alpha_sin)
 }
 
 /// Samples the slope of a visible facet across the view, for unit roughness. Visibility does not depend on it.

@@ -6,8 +6,9 @@
 //! `roughplastic`, `conductor`, `roughconductor`, `dielectric`, `roughdielectric`, `principled`, `mask` and `twosided`.
 //!
 //! Files use only files before them in this order: `microfacet`, `fresnel`, `table` and `albedo`; `base` and `lobe`
-//! (one file per lobe); `model` (data); `bsdf`, `sample`, `bound`, `packet`, `alike16` and `straight` (evaluation);
-//! `colours`, `layers` and `build` (from the scene's materials); `materials` (lookup).
+//! (one file per lobe); `model` and `lobe_set` (data); `bsdf`, `sample`, `bound`, `packet`, `alike16`, `prepared`,
+//! `mean` and `straight` (evaluation); `colours`, `layers` and `build` (from the scene's materials); `materials`
+//! (lookup).
 //!
 //! All directions are in the local shading frame (z = shading normal), point away from the surface and have unit
 //! length: `wo` towards the eye or the previous vertex of the path, `wi` towards the light.
@@ -22,7 +23,9 @@ mod colours;
 mod fresnel;
 mod layers;
 mod lobe;
+mod lobe_set;
 mod materials;
+mod mean;
 mod microfacet;
 mod model;
 mod packet;
@@ -35,12 +38,13 @@ mod table;
 mod tables;
 
 pub use alike16::AlikeBsdfs16;
-pub use bsdf::LobeSet;
 pub use lobe::{DirectionBound, DirectionBounds16, DullLobe, LobeShape};
+pub use lobe_set::LobeSet;
 pub use materials::Materials;
+pub use mean::MeanBsdf;
 pub use model::Bsdf;
 pub use packet::{BsdfSamples16, Bsdfs16};
-pub use prepared::{MeanBsdf, PreparedBsdf};
+pub use prepared::PreparedBsdf;
 pub use straight::LastStraight;
 
 #[cfg(test)]

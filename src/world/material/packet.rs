@@ -1,5 +1,6 @@
 //! Materials at sixteen points at once. Lambertian materials are evaluated in all lanes together, others one by one.
 
+use super::lobe::BsdfSample;
 use super::model::Bsdf;
 use base::math::{F32x16, LANES, Rgb, U32x16, Vec2x16, Vec3x16, lanes_in, mask_of};
 use base::sampling::cosine_hemisphere;
@@ -22,7 +23,7 @@ pub struct Bsdfs16<'m> {
 }
 
 /// Sampled directions; see [`super::lobe::BsdfSample`] for the fields.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 pub struct BsdfSamples16 {
     /// Unit directions.
     pub wi: Vec3x16,
@@ -35,7 +36,7 @@ pub struct BsdfSamples16 {
     /// Not zero if the path continues.
     pub goes_on: U32x16,
     /// Not zero if the path continues straight through the surface.
-    straight: U32x16,
+    pub(super) straight: U32x16,
 }
 
 impl<'m> Bsdfs16<'m> {
@@ -118,7 +119,7 @@ impl<'m> Bsdfs16<'m> {
     /// Returns [`Bsdf::sample`] in the lanes of `wanted`; other lanes are undefined.
     #[inline]
     pub fn sample(&self, u_lobe: &F32x16, u: &Vec2x16, wanted: u16) -> BsdfSamples16 {
-        let mut s = BsdfSamples16::default();
+        let mut s = BsdfSamples16::NONE;
         for i in 0..LANES {
             let mut wi = cosine_hemisphere(u.get(i));
             s.pdf[i] = wi.z * FRAC_1_PI;
@@ -129,21 +130,36 @@ impl<'m> Bsdfs16<'m> {
             s.goes_on[i] = u32::from(self.wo.z[i] * self.side[i] > 0.0);
         }
         for i in lanes_in(self.layered & wanted) {
-            let sample = self.lanes[i].sample(self.wo.get(i), u_lobe[i], u.get(i));
-            s.goes_on[i] = u32::from(sample.is_some());
-            if let Some(sample) = sample {
-                s.wi.set(i, sample.wi);
-                s.weight.set(i, sample.weight);
-                s.pdf[i] = if sample.delta { f32::INFINITY } else { sample.pdf };
-                s.eta[i] = sample.eta;
-                s.straight[i] = u32::from(sample.straight);
-            }
+            s.set(i, self.lanes[i].sample(self.wo.get(i), u_lobe[i], u.get(i)));
         }
         s
     }
 }
 
 impl BsdfSamples16 {
+    /// Samples of paths that all end.
+    pub(super) const NONE: BsdfSamples16 = BsdfSamples16 {
+        wi: Vec3x16::ZERO,
+        weight: Vec3x16::ZERO,
+        pdf: [0.0; LANES],
+        eta: [0.0; LANES],
+        goes_on: [0; LANES],
+        straight: [0; LANES],
+    };
+
+    /// Sets a lane to a sample, or ends the path of the lane.
+    #[inline]
+    pub(super) fn set(&mut self, lane: usize, sample: Option<BsdfSample>) {
+        self.goes_on[lane] = u32::from(sample.is_some());
+        if let Some(sample) = sample {
+            self.wi.set(lane, sample.wi);
+            self.weight.set(lane, sample.weight);
+            self.pdf[lane] = if sample.delta { f32::INFINITY } else { sample.pdf };
+            self.eta[lane] = sample.eta;
+            self.straight[lane] = u32::from(sample.straight);
+        }
+    }
+
     /// Returns the lanes of delta lobes.
     #[inline]
     pub fn delta(&self) -> u16 {

@@ -35,15 +35,15 @@ impl Bsdf<'_> {
             let weight = self.base * PI;
             BsdfSample { wi, weight, pdf: wi.z * FRAC_1_PI, delta: false, eta: 1.0, straight: false }
         } else {
-            self.sample_layered(wo, u_lobe, u)?
+            self.sample_layered(&self.outgoing(wo), u_lobe, u)?
         };
         sample.wi.z *= side;
         Some(sample)
     }
 
     /// Samples a material that is more than Lambertian.
-    fn sample_layered(&self, wo: Vec3, u_lobe: f32, u: Vec2) -> Option<BsdfSample> {
-        let outgoing = self.outgoing(wo);
+    pub(super) fn sample_layered(&self, outgoing: &Outgoing, u_lobe: f32, u: Vec2) -> Option<BsdfSample> {
+        let wo = outgoing.wo;
         let smooth = |wi: Vec3, eta: f32, (value, pdf): (Rgb, f32)| {
             let weight = value * (wi.z.abs() / pdf);
             let sample = BsdfSample { wi, weight, pdf, delta: false, eta, straight: false };
@@ -51,14 +51,14 @@ impl Bsdf<'_> {
         };
         if u_lobe < outgoing.base_probability {
             let wi = cosine_hemisphere(u);
-            return smooth(wi, 1.0, self.eval_pdf_layered(&outgoing, wi));
+            return smooth(wi, 1.0, self.eval_pdf_layered(outgoing, wi));
         }
-        let slot = self.pick(&outgoing, u_lobe)?;
+        let slot = self.pick(outgoing, u_lobe)?;
         let (lobe, pdf) = (&self.model.lobes[slot], outgoing.probabilities[slot]);
         if !lobe.is_delta() {
             let directions = lobe.sample(wo, u)?;
             let eta = lobe.refraction(wo);
-            return smooth(directions.wi, eta, self.eval_pdf_between(&outgoing, &directions));
+            return smooth(directions.wi, eta, self.eval_pdf_between(outgoing, &directions));
         }
         let sample = lobe.delta(self.scales[slot], wo)?;
         (pdf > 0.0).then_some(BsdfSample { weight: sample.weight / pdf, pdf, ..sample })

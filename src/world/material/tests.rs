@@ -7,6 +7,7 @@ mod bounds;
 mod energy;
 mod filtering;
 mod gaps;
+mod prepared;
 mod rough_glass;
 mod sampling;
 

@@ -8,11 +8,14 @@
 //! direction on the surface. The bounds use the larger roughness for the density and the smaller one for masking. The
 //! albedo is the mean over azimuths.
 
-use super::{DirectionBound, Directions, Directions16, FacetBound, FacetBounds16, LobeLanes, mean};
+use super::{
+    DirectionBound, Directions, Directions16, FacetBound, FacetBounds16, LobeLanes, SeenLobe, ValuePdf16,
+    mean,
+};
 use crate::material::fresnel::Curve;
 use crate::material::microfacet::Microfacets;
 use crate::material::table::{AngleTable, rule};
-use base::math::{LANES, Rgb, Vec3x16};
+use base::math::{LANES, Rgb, Vec3x16, select};
 use glam::{Vec2, Vec3};
 use scene::{Distribution, Fresnel};
 use std::f32::consts::FRAC_PI_2;
@@ -170,6 +173,35 @@ impl AnisotropicLobe {
                 sum.set(l, sum.get(l) + self.eval_pdf(lanes.scale.get(l), 0.0, &d).0);
             }
         }
+    }
+
+    /// See [`super::LobeModel::seen`].
+    #[inline]
+    pub fn seen(&self, probability: f32, wo: Vec3) -> SeenLobe {
+        SeenLobe { masking: self.v1(wo), density: probability * 0.5 * self.v1_exact(wo) }
+    }
+
+    /// See [`super::LobeModel::add_eval_pdf16`].
+    pub fn add_eval_pdf16(&self, scale: Rgb, seen: &SeenLobe, d: &Directions16, sum: &mut ValuePdf16) {
+        let (inverse, area) = (1.0 / (self.alpha * self.alpha), self.alpha.x * self.alpha.y);
+        let (mut slope_sq, mut cos, mut inv_length) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
+        for l in 0..LANES {
+            slope_sq[l] = d.x_sq[l] * inverse.x + d.y_sq[l] * inverse.y;
+            let stretched = self.stretched(d.wi.get(l));
+            inv_length[l] = 1.0 / stretched.length();
+            cos[l] = stretched.z * inv_length[l];
+        }
+        let density = self.unit.density16(&slope_sq, &d.cos_sq);
+        let reflectance = self.fresnel.reflectance16(&d.cos_d);
+        let mut masked = self.unit.v1_16(&cos);
+        let mut pdf = [0.0; LANES];
+        for l in 0..LANES {
+            let density = select(d.reflects(l), density[l] / area, 0.0);
+            let masking = select(d.reflects(l), masked[l] * inv_length[l], 0.0);
+            masked[l] = density * seen.masking * masking;
+            pdf[l] = density * seen.density;
+        }
+        sum.add(scale, &reflectance, &masked, &pdf);
     }
 
     /// See [`super::LobeModel::add_bound16`].

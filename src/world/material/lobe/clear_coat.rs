@@ -5,10 +5,13 @@
 //! the light.
 //! Deviations: the Fresnel reflectance is Schlick's for an index of 1.5, for every material.
 
-use super::{DirectionBound, Directions, Directions16, FacetBound, FacetBounds16, LobeLanes, mean};
+use super::{
+    DirectionBound, Directions, Directions16, FacetBound, FacetBounds16, LobeLanes, SeenLobe, ValuePdf16,
+    mean,
+};
 use crate::material::fresnel::schlick_weight;
 use crate::material::microfacet::Microfacets;
-use base::math::{LANES, Rgb, Vec3x16};
+use base::math::{LANES, Rgb, Vec3x16, select};
 use glam::{Vec2, Vec3};
 use scene::Distribution;
 use std::f32::consts::{PI, TAU};
@@ -124,6 +127,31 @@ impl ClearCoat {
                 sum.set(l, sum.get(l) + value);
             }
         }
+    }
+
+    /// See [`super::LobeModel::seen`].
+    #[inline]
+    pub fn seen(&self, probability: f32, wo: Vec3) -> SeenLobe {
+        SeenLobe { masking: STRENGTH * self.g1(wo.z.min(1.0)), density: probability * 0.25 }
+    }
+
+    /// See [`super::LobeModel::add_eval_pdf16`].
+    pub fn add_eval_pdf16(&self, scale: Rgb, seen: &SeenLobe, d: &Directions16, sum: &mut ValuePdf16) {
+        let a = self.alpha_sq - 1.0;
+        let top = a / (PI * self.alpha_sq.ln());
+        let masking = self.masking.v1_16(&d.wi.z);
+        let (mut masked, mut pdf) = ([0.0; LANES], [0.0; LANES]);
+        let mut reflectance = [0.0; LANES];
+        for l in 0..LANES {
+            let cos_d = d.cos_d[l];
+            let reflects = d.reflects(l) & (cos_d > 0.0);
+            let density = top / (1.0 + a * d.cos_sq[l]);
+            let cos_i = select(d.wi.z[l] < 1.0, d.wi.z[l], 1.0);
+            reflectance[l] = Self::reflectance(cos_d);
+            masked[l] = select(reflects, density * seen.masking * (2.0 * cos_i * masking[l]), 0.0);
+            pdf[l] = select(reflects, density * seen.density * d.cos_sq[l].sqrt() / cos_d, 0.0);
+        }
+        sum.add(scale, &Vec3x16 { x: reflectance, y: reflectance, z: reflectance }, &masked, &pdf);
     }
 
     /// See [`super::LobeModel::add_bound16`].

@@ -4,10 +4,12 @@
 //! Paper: B. Burley, *Extending the Disney BRDF to a BSDF with Integrated Subsurface Scattering*, 2015, equation 4;
 //! *Physically Based Shading at Disney*, 2012, section 5.2.
 
-use super::{DirectionBound, Directions, Directions16, FacetBound, FacetBounds16, LobeLanes};
+use super::{
+    DirectionBound, Directions, Directions16, FacetBound, FacetBounds16, LobeLanes, SeenLobe, ValuePdf16,
+};
 use crate::material::fresnel::schlick_weight;
 use crate::material::table::{AngleTable, rule};
-use base::math::{LANES, Rgb, Vec3x16};
+use base::math::{LANES, Rgb, Vec3x16, select};
 use base::sampling::cosine_hemisphere;
 use glam::{Vec2, Vec3};
 use std::f32::consts::{FRAC_1_PI, PI};
@@ -129,6 +131,24 @@ impl Grazing {
                 sum.set(l, sum.get(l) + lanes.scale.get(l) * value);
             }
         }
+    }
+
+    /// See [`super::LobeModel::seen`].
+    #[inline]
+    pub fn seen(&self, probability: f32, wo: Vec3) -> SeenLobe {
+        SeenLobe { masking: schlick_weight(wo.z), density: probability * FRAC_1_PI }
+    }
+
+    /// See [`super::LobeModel::add_eval_pdf16`].
+    pub fn add_eval_pdf16(&self, scale: Rgb, seen: &SeenLobe, d: &Directions16, sum: &mut ValuePdf16) {
+        let (mut value, mut pdf) = ([0.0; LANES], [0.0; LANES]);
+        for l in 0..LANES {
+            let weights = [seen.masking, schlick_weight(d.wi.z[l])];
+            let reflected = self.kind.value(weights, d.cos_d[l]);
+            value[l] = select(d.reflects(l), reflected, 0.0);
+            pdf[l] = select(d.reflects(l), d.wi.z[l] * seen.density, 0.0);
+        }
+        sum.add(scale, &Vec3x16::splat(Vec3::ONE), &value, &pdf);
     }
 
     /// See [`super::LobeModel::add_bound16`].

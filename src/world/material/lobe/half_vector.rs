@@ -7,7 +7,7 @@
 //! angle between wo and h is at most half the sum of the two inclinations.
 
 use super::{DirectionBound, DirectionBounds16};
-use base::math::{F32x16, LANES, Vec3x16};
+use base::math::{F32x16, LANES, Vec3x16, select};
 use glam::Vec3;
 
 /// Rounding error of a cosine or of a product of two. It matters for α below 0.01.
@@ -39,6 +39,10 @@ impl Directions {
 pub(in crate::material) struct Directions16<'a> {
     pub wo: &'a Vec3x16,
     pub wi: &'a Vec3x16,
+    /// Squared first coordinates of the facet normals.
+    pub x_sq: F32x16,
+    /// Squared second coordinates of the facet normals.
+    pub y_sq: F32x16,
     /// Squared sines of the facet normals' inclinations; 0, like the cosines, if no facet is visible.
     pub sin_sq: F32x16,
     /// Squared cosines of the facet normals' inclinations.
@@ -52,18 +56,41 @@ impl Directions16<'_> {
     #[inline(always)]
     pub fn new<'a>(wo: &'a Vec3x16, wi: &'a Vec3x16) -> Directions16<'a> {
         let zero = [0.0; LANES];
-        let mut all = Directions16 { wo, wi, sin_sq: zero, cos_sq: zero, cos_d: zero };
+        let mut all =
+            Directions16 { wo, wi, x_sq: zero, y_sq: zero, sin_sq: zero, cos_sq: zero, cos_d: zero };
         for l in 0..LANES {
             let (wo, wi) = (wo.get(l), wi.get(l));
             let h = wo + wi;
             let length_sq = h.length_squared();
-            let inverse = if length_sq > MIN_SUM_SQ { 1.0 / length_sq } else { 0.0 };
+            let inverse = select(length_sq > MIN_SUM_SQ, 1.0 / length_sq, 0.0);
+            all.x_sq[l] = h.x * h.x * inverse;
+            all.y_sq[l] = h.y * h.y * inverse;
             all.sin_sq[l] = (h.x * h.x + h.y * h.y) * inverse;
             all.cos_sq[l] = h.z * h.z * inverse;
             let d = wo.dot(h) * inverse.sqrt();
-            all.cos_d[l] = if d < 1.0 { d } else { 1.0 };
+            all.cos_d[l] = select(d < 1.0, d, 1.0);
         }
         all
+    }
+
+    /// Sets the facet normals in the lanes of a mask, where rounding of a short sum of directions would blur them.
+    #[inline]
+    pub fn set_half(&mut self, mask: u16, half: &Vec3x16) {
+        for l in 0..LANES {
+            let (wo, h) = (self.wo.get(l), half.get(l));
+            let (set, d) = (mask >> l & 1 != 0, wo.dot(h));
+            self.x_sq[l] = select(set, h.x * h.x, self.x_sq[l]);
+            self.y_sq[l] = select(set, h.y * h.y, self.y_sq[l]);
+            self.sin_sq[l] = select(set, h.x * h.x + h.y * h.y, self.sin_sq[l]);
+            self.cos_sq[l] = select(set, h.z * h.z, self.cos_sq[l]);
+            self.cos_d[l] = select(set, select(d < 1.0, d, 1.0), self.cos_d[l]);
+        }
+    }
+
+    /// Returns true if the lane's `wi` is above the surface and a facet is visible, for a `wo` above the surface.
+    #[inline(always)]
+    pub fn reflects(&self, lane: usize) -> bool {
+        (self.wi.z[lane] > 0.0) & (self.sin_sq[lane] + self.cos_sq[lane] > 0.0)
     }
 }
 

@@ -27,7 +27,7 @@ pub use dull::DullLobe;
 pub(super) use grazing::{Grazing, GrazingKind};
 pub(super) use half_vector::{Directions, Directions16, FacetBound, FacetBounds16};
 pub(super) use interface::{Interface, Passage};
-pub(super) use lanes::{LobeLanes, mean};
+pub(super) use lanes::{LobeLanes, Sampled16, SeenLobe, ValuePdf16, mean};
 pub(super) use mirror::Mirror;
 pub(super) use model::{LobeModel, MAX_LOBES};
 pub(super) use rough::{DIFFUSE_ALPHA, RoughLobe};

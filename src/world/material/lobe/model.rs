@@ -2,9 +2,10 @@
 
 use super::{
     AnisotropicLobe, BsdfSample, ClearCoat, Directions, Directions16, FacetBound, FacetBounds16, Grazing,
-    Interface, LobeLanes, Mirror, ReflectedLobe, RoughInterface, RoughLobe, mean,
+    Interface, LobeLanes, Mirror, ReflectedLobe, RoughInterface, RoughLobe, Sampled16, SeenLobe, ValuePdf16,
+    mean,
 };
-use base::math::{Rgb, Vec3x16};
+use base::math::{Rgb, Vec2x16, Vec3x16};
 use glam::{Vec2, Vec3};
 
 /// Maximum number of lobes of a material.
@@ -228,6 +229,40 @@ impl LobeModel {
             LobeModel::ClearCoat(coat) => coat.add_value16(lanes, directions, sum),
             LobeModel::Grazing(grazing) => grazing.add_value16(lanes, directions, sum),
             _ => {}
+        }
+    }
+
+    /// Prepares a lobe for `wo` on the side of the normal. `probability` is that of choosing the lobe. Lobes that
+    /// transmit light have no such form.
+    #[inline]
+    pub fn seen(&self, probability: f32, wo: Vec3) -> SeenLobe {
+        match self {
+            LobeModel::Rough(rough) => rough.seen(probability, wo),
+            LobeModel::Anisotropic(rough) => rough.seen(probability, wo),
+            LobeModel::ClearCoat(coat) => coat.seen(probability, wo),
+            LobeModel::Grazing(grazing) => grazing.seen(probability, wo),
+            _ => SeenLobe::default(),
+        }
+    }
+
+    /// Adds [`LobeModel::eval_pdf`] in all lanes, all of which have the `wo` of `seen`.
+    #[inline]
+    pub fn add_eval_pdf16(&self, scale: Rgb, seen: &SeenLobe, d: &Directions16, sum: &mut ValuePdf16) {
+        match self {
+            LobeModel::Rough(rough) => rough.add_eval_pdf16(scale, seen, d, sum),
+            LobeModel::Anisotropic(rough) => rough.add_eval_pdf16(scale, seen, d, sum),
+            LobeModel::ClearCoat(coat) => coat.add_eval_pdf16(scale, seen, d, sum),
+            LobeModel::Grazing(grazing) => grazing.add_eval_pdf16(scale, seen, d, sum),
+            _ => {}
+        }
+    }
+
+    /// Sets the lanes of a mask to [`LobeModel::sample`].
+    #[inline]
+    pub fn sample16(&self, wo: Vec3, u: &Vec2x16, mask: u16, sampled: &mut Sampled16) {
+        match self {
+            LobeModel::Rough(rough) => rough.sample16(wo, u, mask, sampled),
+            _ => sampled.one_by_one(mask, |l| self.sample(wo, u.get(l))),
         }
     }
 

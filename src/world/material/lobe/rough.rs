@@ -9,12 +9,12 @@
 
 use super::{
     DirectionBound, Directions, Directions16, FacetBound, FacetBounds16, LobeLanes, LobeShape, ReflectedLobe,
-    mean,
+    Sampled16, SeenLobe, ValuePdf16, mean,
 };
 use crate::material::fresnel::Curve;
 use crate::material::microfacet::Microfacets;
 use crate::material::table::{ANGLES, AngleTable};
-use base::math::{LANES, Rgb, Vec3x16, luminance};
+use base::math::{LANES, Rgb, Vec2x16, Vec3x16, luminance, select};
 use glam::{Vec2, Vec3};
 use scene::Fresnel;
 use std::sync::Arc;
@@ -160,12 +160,43 @@ impl RoughLobe {
     pub(super) fn add_value16(&self, lanes: &LobeLanes, d: &Directions16, sum: &mut Vec3x16) {
         let reflectance = self.fresnel.reflectance16(&d.cos_d);
         let mut masked = self.facets.density16(&d.sin_sq, &d.cos_sq);
+        let masking = self.facets.v1_16(&d.wi.z);
         for l in 0..LANES {
-            let cos_i = if d.wi.z[l] < 1.0 { d.wi.z[l] } else { 1.0 };
-            masked[l] *= lanes.masking[l] * self.facets.v1(if cos_i > 0.0 { cos_i } else { 1.0 });
-            masked[l] = if d.sin_sq[l] + d.cos_sq[l] > 0.0 { masked[l] } else { 0.0 };
+            masked[l] *= lanes.masking[l] * masking[l];
+            masked[l] = select(d.sin_sq[l] + d.cos_sq[l] > 0.0, masked[l], 0.0);
         }
         lanes.add(sum, &reflectance, &masked);
+    }
+
+    /// See [`super::LobeModel::seen`].
+    #[inline]
+    pub(super) fn seen(&self, probability: f32, wo: Vec3) -> SeenLobe {
+        let cos = wo.z.min(1.0);
+        SeenLobe { masking: self.facets.v1(cos), density: probability * 0.5 * self.facets.v1_exact(cos) }
+    }
+
+    /// See [`super::LobeModel::add_eval_pdf16`].
+    #[inline]
+    pub(super) fn add_eval_pdf16(&self, scale: Rgb, seen: &SeenLobe, d: &Directions16, sum: &mut ValuePdf16) {
+        let density = self.facets.density16(&d.sin_sq, &d.cos_sq);
+        let reflectance = self.fresnel.reflectance16(&d.cos_d);
+        let mut masked = self.facets.v1_16(&d.wi.z);
+        let mut pdf = [0.0; LANES];
+        for l in 0..LANES {
+            let reflects = d.reflects(l);
+            masked[l] = select(reflects, density[l] * seen.masking * masked[l], 0.0);
+            pdf[l] = select(reflects, density[l] * seen.density, 0.0);
+        }
+        sum.add(scale, &reflectance, &masked, &pdf);
+    }
+
+    /// See [`super::LobeModel::sample16`]; `wo` is on the side of the normal.
+    #[inline]
+    pub(super) fn sample16(&self, wo: Vec3, u: &Vec2x16, mask: u16, sampled: &mut Sampled16) {
+        match self.facets.ggx_normals16(wo, u) {
+            Some(half) => sampled.reflect(wo, &half, mask),
+            None => sampled.one_by_one(mask, |l| self.sample(wo, u.get(l))),
+        }
     }
 
     /// See [`super::LobeModel::add_bound16`].
