@@ -77,10 +77,11 @@ impl Triangles16 {
         self.barycentric.set(lane, u);
     }
 
-    /// Maps the random numbers in `barycentric` to barycentric weights, and samples the light from these points.
+    /// Maps the random numbers in `barycentric` to barycentric weights, and samples the light from these points. Writes
+    /// all lanes.
     #[inline]
-    pub fn sample(&mut self, x: &Vec3x16, choice: &F32x16) -> DirectSamples16 {
-        let mut s = DirectSamples16 { normal: self.normal, radiance: self.radiance, ..Default::default() };
+    pub fn sample(&mut self, x: &Vec3x16, choice: &F32x16, s: &mut DirectSamples16) {
+        (s.normal, s.radiance) = (self.normal, self.radiance);
         for i in 0..LANES {
             let b = uniform_triangle(self.barycentric.get(i));
             self.barycentric.set(i, b);
@@ -97,6 +98,5 @@ impl Triangles16 {
             let shines = (cos > 0.0) | (self.two_sided[i] != 0);
             s.useful[i] = u32::from((pdf < f32::INFINITY) & (pdf > 0.0) & shines);
         }
-        s
     }
 }
