@@ -51,7 +51,7 @@ impl Triangles16 {
             let [corner, e1, e2, normal] = light.shapes()[triangle as usize];
             if here == u16::MAX {
                 (self.corner, self.normal) = (Vec3x16::splat(corner), Vec3x16::splat(normal));
-                self.edges = [e1, e2].map(Vec3x16::splat);
+                self.edges = [Vec3x16::splat(e1), Vec3x16::splat(e2)];
                 continue;
             }
             let bits = bits_of(here);
