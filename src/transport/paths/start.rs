@@ -44,9 +44,12 @@ pub fn start(
         if count == 0 {
             return;
         }
+        let (mut pixels, mut numbers) = ([[0; 2]; LANES], [[0; 2]; LANES]);
         for (i, PathStart { pixel, sample, seed }) in starts.into_iter().enumerate() {
             samplers.seed[i] = pixel_seed(pixel, seed);
             samplers.index[i] = sample;
+            pixels[i] = pixel;
+            numbers[i] = estimand.numbers(seed, sample).into();
         }
         let mut jitter = samplers.point(1);
         if estimand != Estimand::Pixels {
@@ -54,8 +57,6 @@ pub fn start(
                 jitter.set(i, estimand.eye_sampler(path.pixel, path.seed, path.sample).1);
             }
         }
-        let pixels = starts.map(|path| path.pixel);
-        let numbers = starts.map(|path| <[u32; 2]>::from(estimand.numbers(path.seed, path.sample)));
         let mut rays = Rays16::default();
         view.sample_rays16(&pixels, &jitter, &numbers, &mut rays);
         if world.scene.hides_emitters {

@@ -56,17 +56,18 @@ impl Emitters {
         u: &Vec2x16,
         wanted: u16,
     ) -> DirectSamples16 {
-        let possible = wanted & mask_of(&choice.map(|choice| u32::from(choice > 0.0)));
-        let far = possible & lanes_with(chosen, self.environment_index());
-        let (mut on_areas, count) = ([0; LANES], self.areas.len() as u32);
+        let (mut possible, mut on_areas, count) = ([0; LANES], [0; LANES], self.areas.len() as u32);
         for i in 0..LANES {
+            possible[i] = u32::from(choice[i] > 0.0);
             on_areas[i] = u32::from(chosen[i] < count);
         }
+        let possible = wanted & mask_of(&possible);
         let near = possible & mask_of(&on_areas);
-        let mut samples = match near {
-            0 => DirectSamples16::default(),
-            _ => self.sample_areas(at, chosen, choice, u, near),
-        };
+        let far = possible & lanes_with(chosen, self.environment_index());
+        let mut samples = DirectSamples16::default();
+        if near != 0 {
+            self.sample_areas(at, chosen, choice, u, near, &mut samples);
+        }
         for lane in lanes_in(possible & !near & !far) {
             let light = &self.deltas[chosen[lane] as usize - self.areas.len()];
             samples.set(lane, DirectSample::delta(light, at.position.get(lane), choice[lane]));
@@ -86,7 +87,8 @@ impl Emitters {
         choice: &F32x16,
         u: &Vec2x16,
         wanted: u16,
-    ) -> DirectSamples16 {
+        samples: &mut DirectSamples16,
+    ) {
         let mut triangles = Triangles16::default();
         let (mut textured, mut left) = (0, wanted);
         while left != 0 {
@@ -97,7 +99,7 @@ impl Emitters {
             textured |= if light.emission.texture.is_some() { lanes } else { 0 };
             triangles.choose(lanes, light, u);
         }
-        let mut samples = triangles.sample(at.position, choice);
+        triangles.sample(at.position, choice, samples);
         for lane in lanes_in(textured) {
             let light = &self.areas[chosen[lane] as usize];
             let factor = light.texture(triangles.index[lane], triangles.barycentric.get(lane));
@@ -105,7 +107,6 @@ impl Emitters {
             samples.radiance.set(lane, radiance);
             samples.useful[lane] &= u32::from(radiance != Rgb::ZERO);
         }
-        samples
     }
 
     /// Samples the environment in the lanes of `wanted`.

@@ -51,7 +51,7 @@ impl Triangles16 {
             let [corner, e1, e2, normal] = light.shapes()[triangle as usize];
             if here == u16::MAX {
                 (self.corner, self.normal) = (Vec3x16::splat(corner), Vec3x16::splat(normal));
-                self.edges = [e1, e2].map(Vec3x16::splat);
+                self.edges = [Vec3x16::splat(e1), Vec3x16::splat(e2)];
                 continue;
             }
             let bits = bits_of(here);
@@ -77,10 +77,11 @@ impl Triangles16 {
         self.barycentric.set(lane, u);
     }
 
-    /// Maps the random numbers in `barycentric` to barycentric weights, and samples the light from these points.
+    /// Maps the random numbers in `barycentric` to barycentric weights, and samples the light from these points. Writes
+    /// all lanes.
     #[inline]
-    pub fn sample(&mut self, x: &Vec3x16, choice: &F32x16) -> DirectSamples16 {
-        let mut s = DirectSamples16 { normal: self.normal, radiance: self.radiance, ..Default::default() };
+    pub fn sample(&mut self, x: &Vec3x16, choice: &F32x16, s: &mut DirectSamples16) {
+        (s.normal, s.radiance) = (self.normal, self.radiance);
         for i in 0..LANES {
             let b = uniform_triangle(self.barycentric.get(i));
             self.barycentric.set(i, b);
@@ -97,6 +98,5 @@ impl Triangles16 {
             let shines = (cos > 0.0) | (self.two_sided[i] != 0);
             s.useful[i] = u32::from((pdf < f32::INFINITY) & (pdf > 0.0) & shines);
         }
-        s
     }
 }

@@ -242,7 +242,7 @@ impl EnvironmentLight {
             on_discs |= u16::from(presample.on_disc) << i;
         }
         for i in 0..LANES {
-            samples.pdf[i] = densities[i] * samples.pdf[i];
+            samples.pdf[i] *= densities[i];
         }
         if on_discs != 0 {
             let found = self.radiance_pdf16(&samples.direction, on_discs, learned);

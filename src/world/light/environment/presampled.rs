@@ -4,10 +4,12 @@
 //! read. The samples of a tile lie in a grid of cells of the unit square, so that random numbers stay stratified. A
 //! tile has the more of them the more light it has. Shadows of the sun would show steps otherwise.
 //!
-//! Errors: an estimate's expected value is a mean over fixed directions, in place of an integral. Each tile's points
-//! are a net in both random numbers, and about equal in radiance over density. On maps with texels a thousand times as
-//! bright as others the irradiance differs by less than 0.2 %. Densities stay those of the continuous directions, also
-//! in multiple importance sampling.
+//! Errors: the expected value of an estimate is a mean over fixed directions, in place of an integral. The random
+//! numbers of a tile's directions are a net, and radiance over density hardly varies in a tile. On a map with texels a
+//! thousand times as bright as others, tiles differ by up to 1.8 % and irradiances by .04 %. Where few tiles are seen
+//! by learned visibility, shadows have steps of about 1/64 of a tile's light.
+//!
+//! Densities stay those of continuous directions, also in multiple importance sampling.
 
 use super::sample::EnvironmentSample;
 use base::math::{LANES, Rgb};
