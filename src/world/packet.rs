@@ -134,8 +134,7 @@ impl World {
     /// Returns the lanes whose materials scatter light by densities alone: by no mirrors, no glass and no gaps.
     #[inline]
     pub fn with_densities_alone(&self, mesh: &U32x16) -> u16 {
-        let alone =
-            |mesh: u32| self.materials.has_only_densities(self.scene.meshes[mesh as usize].material);
+        let alone = |mesh: u32| self.materials.has_only_densities(self.scene.meshes[mesh as usize].material);
         if *mesh == [mesh[0]; LANES] {
             return if alone(mesh[0]) { u16::MAX } else { 0 };
         }

@@ -16,8 +16,8 @@ use base::math::{Cone, LANES, Rgb, Vec3x16, first_lanes, lanes_in};
 use base::sampling::Samplers16;
 use embree::{Hits16, Ray, Rays16};
 use std::mem;
-use world::{Surfaces16, World};
 use world::light::Receivers16;
+use world::{Surfaces16, World};
 
 /// Paths in flight, and their contributions so far.
 #[derive(Default)]
@@ -133,8 +133,9 @@ impl Batch {
             collect(world, &first, grouped, &mut groups);
             let radiance = &mut self.radiance[..];
             let groups = &mut groups[..];
-            let going_on = GroupedVertices { world, surfaces, groups, coherent, radiance, counts: &mut *counts }
-                .scatter(&mut packet, policy);
+            let going_on =
+                GroupedVertices { world, surfaces, groups, coherent, radiance, counts: &mut *counts }
+                    .scatter(&mut packet, policy);
             let step = Step { depth: 1, max_depth, kept: &mut kept };
             self.go_on(world, &mut packet, going_on, step, policy, counts);
         }

@@ -69,7 +69,10 @@ impl<'w> GroupedVertices<'_, 'w> {
         }
         let at = Receivers16 { position: &surfaces.position, normal: &packet.normal, learned: None };
         let alone = lambert & world.emitters.look_small(at);
-        let guided = Guided { lanes: if policy.edges().guided > 0.0 { lambert } else { 0 }, share: policy.edges().guided };
+        let guided = Guided {
+            lanes: if policy.edges().guided > 0.0 { lambert } else { 0 },
+            share: policy.edges().guided,
+        };
         self.end_chains(packet, policy);
         let requested = policy.light_samples();
         packet.light_samples = [requested.count as f32; LANES];
@@ -256,7 +259,8 @@ impl<'w> GroupedVertices<'_, 'w> {
             if sampled.in_chain >> lane & 1 == 0 {
                 packet.stage[lane] = PathStage::Scattered as u32;
             } else {
-                packet.path_class[lane] = next_class(packet.path_class[lane], [true, false], surfaces.mesh[lane]);
+                packet.path_class[lane] =
+                    next_class(packet.path_class[lane], [true, false], surfaces.mesh[lane]);
             }
         }
         let blind = if world.emitters.are_hittable() { alone } else { found & !sampled.in_chain };
@@ -271,7 +275,8 @@ impl<'w> GroupedVertices<'_, 'w> {
             }
         }
         for i in 0..LANES {
-            let ray = shadow::ray_from(surfaces.position.get(i), surfaces.normal.get(i), sampled.direction.get(i));
+            let ray =
+                shadow::ray_from(surfaces.position.get(i), surfaces.normal.get(i), sampled.direction.get(i));
             packet.rays.set(i, &ray);
         }
         found

@@ -132,7 +132,8 @@ impl FirstHits16<'_> {
         for i in 0..LANES {
             let between = s.position.get(i) - position;
             let (n, direction) = (s.shading_normal.get(i), directions.get(i));
-            let near = (between.length_squared() < most_sq) & (normal.dot(between).abs() < MAX_HEIGHT * spacing);
+            let near =
+                (between.length_squared() < most_sq) & (normal.dot(between).abs() < MAX_HEIGHT * spacing);
             let alike = (normal.dot(n) > min_cos) & ((direction.dot(n) < 0.0) == front);
             let seen = (along.dot(direction) > MIN_OUT_COS) & (pixel[i] == pixel[first]);
             same[i] &= u32::from(near & alike & seen);

@@ -72,7 +72,8 @@ impl Traced {
 fn groups_on_flat_even_surfaces_have_the_light_of_every_path() {
     let world = room_with_ball(None);
     for light_samples in [1, 3] {
-        let [single, grouped] = [false, true].map(|in_groups| Traced::new(&world, in_groups, light_samples, 1));
+        let [single, grouped] =
+            [false, true].map(|in_groups| Traced::new(&world, in_groups, light_samples, 1));
         for (a, b) in single.radiance.iter().zip(&grouped.radiance) {
             assert!((*a - *b).abs().max_element() <= 1e-4 * a.max_element().max(1e-3), "{a} {b}");
         }
@@ -96,7 +97,12 @@ fn groups_on_curved_textured_and_glossy_surfaces_have_the_same_mean_and_noise() 
         let world = room_with_ball(Some(ball.unwrap_or_else(|| diffuse(Rgb::splat(0.6)))));
         let [single, again] = [1, 2].map(|seed| Traced::new(&world, false, 1, seed));
         let grouped = Traced::new(&world, true, 1, 1);
-        assert!((grouped.mean() / single.mean() - 1.0).abs() < 2e-3, "{what}: {} {}", grouped.mean(), single.mean());
+        assert!(
+            (grouped.mean() / single.mean() - 1.0).abs() < 2e-3,
+            "{what}: {} {}",
+            grouped.mean(),
+            single.mean()
+        );
         let distance = |a: &Traced, b: &Traced| -> f64 {
             a.pixels().iter().zip(b.pixels()).map(|(a, b)| (a - b).powi(2)).sum()
         };
@@ -114,7 +120,9 @@ fn groups_reflect_the_mean_of_their_texels() {
     let checker = checkered(&mut scene, 64, texels.collect());
     let checker = add_material(&mut scene, checker);
     let grey = add_material(&mut scene, diffuse(Rgb::splat(0.5)));
-    scene.meshes.push(textured(quad(Vec3::new(-2.0, -2.0, 0.0), Vec3::X * 4.0, Vec3::Y * 4.0, checker), Vec2::ONE));
+    scene
+        .meshes
+        .push(textured(quad(Vec3::new(-2.0, -2.0, 0.0), Vec3::X * 4.0, Vec3::Y * 4.0, checker), Vec2::ONE));
     let lamp = quad(Vec3::new(-1.0, -1.0, 3.0), Vec3::Y * 2.0, Vec3::X * 2.0, grey);
     scene.meshes.push(emitting(lamp, Rgb::ONE));
     let world = world(scene);
