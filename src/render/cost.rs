@@ -76,7 +76,7 @@ pub const PRICES: Prices = Prices {
     ray_by_doubling: 0.018,
     counted_ray_by_doubling: 0.03,
     smallest_scene: 32.0,
-    sampled: 1.25,
+    sampled: 0.85,
     cached: 0.94,
     pilot: 1.9,
     guided: 0.82,

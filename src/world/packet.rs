@@ -150,11 +150,17 @@ impl World {
             return (bsdf, lanes);
         }
         let at = self.textured(s, lanes);
-        let bsdf = |i: usize| {
-            let uv = || at[i].unwrap_or_else(|| self.coordinates(s, i));
-            let covered = || self.covered(s.mesh[i], s.triangle[i], s.footprint.get(i));
-            self.materials.at_coordinates(id, uv, covered)
-        };
+        let uv = |i: usize| at[i].unwrap_or_else(|| self.coordinates(s, i));
+        let covered = |i: usize| self.covered(s.mesh[i], s.triangle[i], s.footprint.get(i));
+        let (mut places, mut count) = ([(Vec2::ZERO, 0.0); LANES], 0);
+        for lane in lanes_in(lanes) {
+            places[count] = (uv(lane), covered(lane));
+            count += 1;
+        }
+        if let Some(mean) = self.materials.mean(id, &places[..count]) {
+            return (mean, lanes);
+        }
+        let bsdf = |i: usize| self.materials.at_coordinates(id, || uv(i), || covered(i));
         let (first_bsdf, mut taken) = (bsdf(first), 1 << first);
         let mut mean = MeanBsdf::new(first_bsdf);
         for lane in lanes_in(lanes & !taken) {
@@ -174,8 +180,8 @@ impl World {
         self.scene.meshes[s.mesh[lane] as usize].uv(vertices, s.barycentric.get(lane))
     }
 
-    /// Returns the texture coordinates of the surfaces in `lanes` that are textured. It also reads some of their texels,
-    /// so that the lanes wait for memory together.
+    /// Returns the texture coordinates of the surfaces in `lanes` that are textured. It also reads some of their
+    /// texels, so that the lanes wait for memory together.
     #[inline]
     fn textured(&self, s: &Surfaces16, lanes: u16) -> [Option<Vec2>; LANES] {
         let (mut at, mut squares) = ([None; LANES], [None; LANES]);

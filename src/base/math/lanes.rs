@@ -234,7 +234,7 @@ mod tests {
             let mut row = [f32::NAN; LANES];
             blend(&mut row, &bits, &numbers);
             let mut vectors = Vec3x16::splat(Vec3::splat(9.0));
-            vectors.blend(&bits, Vec3::new(1.0, -2.0, 3.0));
+            vectors.fill(&bits, Vec3::new(1.0, -2.0, 3.0));
             let mut counts = [5; LANES];
             blend_u32(&mut counts, &bits, &[8; LANES]);
             for i in 0..LANES {

@@ -81,8 +81,8 @@ impl Regions {
 
     /// Returns the regions of sixteen points.
     ///
-    /// Points that are close together descend together. Then all lanes descend to the depth of the deepest leaf, so that
-    /// they wait for memory together.
+    /// Points that are close together descend together. Then all lanes descend to the depth of the deepest leaf, so
+    /// that they wait for memory together.
     #[inline]
     pub fn find(&self, x: &Vec3x16) -> [usize; LANES] {
         let rows = x.rows();

@@ -103,6 +103,18 @@ impl Materials {
         }
     }
 
+    /// Returns the mean of a material over places, each given by texture coordinates and the side of the square that it
+    /// covers; `None` if it is not the material of the mean texels.
+    #[inline]
+    pub fn mean(&self, id: MaterialId, places: &[(Vec2, f32)]) -> Option<Bsdf<'_>> {
+        let entry = &self.entries[id.0 as usize];
+        let texel = |id: TextureId| {
+            let sum: Rgb = places.iter().map(|(uv, covered)| self.textures.lookup(id, *uv, *covered)).sum();
+            sum / places.len() as f32
+        };
+        (!entry.filtered.is_empty()).then(|| entry.coloured.bsdf(&texel))
+    }
+
     fn textured<'m>(&'m self, entry: &'m MaterialEntry, uv: Vec2, covered: f32) -> Bsdf<'m> {
         let texel = |id: TextureId| self.textures.lookup(id, uv, covered);
         let coloured = match &entry.levels {
