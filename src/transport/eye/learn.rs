@@ -154,12 +154,12 @@ impl Tracer<'_, '_> {
             let tiles = std::array::from_fn(|lane| (first + lane) * STRIDE % environment.tile_count());
             let mut u = Vec2x16::default();
             (0..LANES).for_each(|lane| u.set(lane, sampler.next_2d()));
-            let samples = environment.sample_of_tiles(&tiles, &u);
+            let directions = environment.directions_of_tiles(&tiles, &u);
             let (mut segments, mut cos) = (Rays16::default(), [0.0; LANES]);
-            for (lane, sample) in samples.iter().enumerate() {
-                if let Some(sample) = sample {
-                    cos[lane] = normal.dot(sample.direction).max(0.0);
-                    segments.set(lane, &shadow::ray_from(x, geometric_normal, sample.direction));
+            for (lane, direction) in directions.iter().enumerate() {
+                if let Some(direction) = *direction {
+                    cos[lane] = normal.dot(direction).max(0.0);
+                    segments.set(lane, &shadow::ray_from(x, geometric_normal, direction));
                 }
             }
             let lit = (0..LANES).filter(|lane| cos[*lane] > 0.0).fold(0, |lit, lane| lit | 1u16 << lane);

@@ -256,10 +256,11 @@ impl EnvironmentLight {
         samples
     }
 
-    /// Samples a direction in each of sixteen tiles. Densities are relative.
-    pub fn sample_of_tiles(&self, tiles: &[usize; LANES], u: &Vec2x16) -> [Option<EnvironmentSample>; LANES] {
-        let chosen = each(u16::MAX, |i| TileSample { tile: tiles[i], u: u.get(i), density: 1.0 });
-        self.sample_tiles(&chosen, u16::MAX)
+    /// Returns one of the directions that were sampled beforehand in each of sixteen tiles; `None` in tiles without
+    /// light.
+    pub fn directions_of_tiles(&self, tiles: &[usize; LANES], u: &Vec2x16) -> [Option<Vec3>; LANES] {
+        let presample = |lane: usize| self.presamples.get(self.presamples.find(tiles[lane], u.get(lane)));
+        std::array::from_fn(|lane| Some(presample(lane)).filter(|s| s.density > 0.0).map(|s| s.direction))
     }
 
     /// Returns the share of all flux that a tile has.

@@ -115,10 +115,13 @@ fn what_is_learned_of_a_window_is_where_most_samples_go_and_all_directions_keep_
                 std::array::from_fn(|lane| (i as usize * 2 + packet + 16 * lane) % light.tile_count());
             let mut u = Vec2x16::default();
             (0..LANES).for_each(|lane| u.set(lane, owen_sobol_2d(i * 32 + lane as u32, 9)));
-            let samples = light.sample_of_tiles(&tiles, &u);
-            observations.rays.extend(tiles.iter().zip(samples).map(|(tile, s)| {
-                (*tile as u16, if i < 64 && s.is_some_and(|s| open(s.direction)) { 1.0 } else { 0.0 })
-            }));
+            let directions = light.directions_of_tiles(&tiles, &u);
+            observations.rays.extend(
+                tiles
+                    .iter()
+                    .zip(directions)
+                    .map(|(tile, d)| (*tile as u16, if i < 64 && d.is_some_and(open) { 1.0 } else { 0.0 })),
+            );
         }
     }
     let learned = light.learn(&observations);
