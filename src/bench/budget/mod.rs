@@ -58,3 +58,33 @@ fn rounds(context: &Context) -> Result<Vec<Round>, String> {
     }
     Ok(rounds)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use base::stats::Stage;
+    use readers::LoadOptions;
+    use render::session::Session;
+    use std::path::Path;
+
+    #[test]
+    fn packets_hold_about_the_rays_of_the_eye_pass() {
+        let scene = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/cornell.toml");
+        let session = Session::open(&scene, &LoadOptions::default()).unwrap().session;
+        let framing = Framing { resolution: Some([48, 32]), ..Framing::default() };
+        let view = View::new(&session.cameras, &framing).unwrap();
+        let method = Method::default();
+        let picture = Picture::render(&session, &view, method).unwrap();
+        let light_samples = picture.light_samples();
+        let source =
+            Source { world: &session.world, view: &view, sampling: method.sampling(), light_samples };
+        let Round { bare, picture } = Round { bare: Bare::measure(&source), picture };
+        assert_eq!(bare.eye.rays as f64, picture.pixels * f64::from(method.spp()));
+        // Extra samples and pilots come on top of the rays of the packets.
+        let per_sample = picture.rays(Stage::EyePass).shadows / picture.eye_rays();
+        let found = bare.shadow.rays as f64 / bare.eye.rays as f64;
+        assert!(found > 0.5 * per_sample && found < 1.1 * per_sample, "{found} {per_sample}");
+        assert!(picture.all_rays().hits > picture.eye_rays());
+        assert!(picture.step(Stage::EyePass) < picture.seconds && picture.rest() < picture.seconds);
+    }
+}

@@ -49,7 +49,7 @@ fn steps(rounds: &[Round]) -> Table {
         rows,
         ..table(
             "Steps",
-            "Processor time of the default method on one thread, by step. Ratio to the total.",
+            "Processor time of the default method on one thread, by step, in at most three rounds. Ratio to the total.",
             "step",
         )
     }
