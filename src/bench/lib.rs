@@ -10,6 +10,7 @@
 mod benchmark;
 mod bounds;
 mod bsdf;
+mod budget;
 mod choice;
 mod document;
 pub mod export;
@@ -31,7 +32,7 @@ pub use benchmark::{Benchmark, Context, Kind, Scenes, Settings};
 pub use report::{Report, Row, Spread, Table};
 
 /// All benchmarks.
-pub const REGISTRY: [Benchmark; 11] = [
+pub const REGISTRY: [Benchmark; 12] = [
     table1::BENCHMARK,
     trade::BENCHMARK,
     race::BENCHMARK,
@@ -43,6 +44,7 @@ pub const REGISTRY: [Benchmark; 11] = [
     trees::BENCHMARK,
     bsdf::BENCHMARK,
     hsh::BENCHMARK,
+    budget::BENCHMARK,
 ];
 
 /// Finds a benchmark by its name.

@@ -16,7 +16,8 @@ pub(super) enum Clock {
 }
 
 impl Clock {
-    fn seconds(self) -> f64 {
+    /// Returns the seconds so far.
+    pub fn seconds(self) -> f64 {
         let time = clock_gettime(match self {
             Clock::Thread => ClockId::ThreadCPUTime,
             Clock::Process => ClockId::ProcessCPUTime,

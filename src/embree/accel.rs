@@ -1,6 +1,6 @@
 //! Acceleration structure over triangle meshes, and queries of single rays.
 
-use super::ray::{ALL_GEOMETRY, CLEAR, OCCLUDING};
+use super::ray::{ALL_GEOMETRY, CLEAR, OCCLUDING, without_hit};
 use super::{Device, EmbreeError, Hit, Ray, Width};
 use embree4_sys as sys;
 use glam::Vec3;
@@ -166,20 +166,7 @@ impl Accel {
     #[inline]
     pub fn closest_hit(&self, ray: &Ray) -> Option<Hit> {
         let ray = ray.to_embree(ALL_GEOMETRY).filter(|_| !self.is_empty())?;
-        let mut rayhit = sys::RTCRayHit {
-            ray,
-            hit: sys::RTCHit {
-                Ng_x: 0.0,
-                Ng_y: 0.0,
-                Ng_z: 0.0,
-                u: 0.0,
-                v: 0.0,
-                primID: sys::RTC_INVALID_GEOMETRY_ID,
-                geomID: sys::RTC_INVALID_GEOMETRY_ID,
-                instID: [sys::RTC_INVALID_GEOMETRY_ID],
-                instPrimID: [sys::RTC_INVALID_GEOMETRY_ID],
-            },
-        };
+        let mut rayhit = without_hit(ray);
         // SAFETY: the scene is committed; the ray is ours, has the library's layout (the version is checked)
         // and is 16-byte aligned by its type; null arguments stand for the defaults.
         unsafe { sys::rtcIntersect1(self.scene, &mut rayhit, std::ptr::null_mut()) };

@@ -28,6 +28,18 @@ pub(super) fn occluded_arguments(coherent: bool) -> sys::RTCOccludedArguments {
     }
 }
 
+/// Returns the arguments of a closest-hit query, without a filter.
+#[inline(always)]
+pub(super) fn intersect_arguments(coherent: bool) -> sys::RTCIntersectArguments {
+    sys::RTCIntersectArguments {
+        flags: query_flags(coherent),
+        feature_mask: sys::RTC_FEATURE_FLAG_ALL,
+        context: std::ptr::null_mut(),
+        filter: None,
+        intersect: None,
+    }
+}
+
 /// A packet in Embree's own layout.
 pub(super) trait EmbreePacket: Copy {
     /// Returns lanes `first..first + width` of sixteen as a packet; `mask` selects the meshes to query.
@@ -187,13 +199,7 @@ impl Accel {
         if self.is_empty() {
             return 0;
         }
-        let mut arguments = sys::RTCIntersectArguments {
-            flags: query_flags(coherent),
-            feature_mask: sys::RTC_FEATURE_FLAG_ALL,
-            context: std::ptr::null_mut(),
-            filter: None,
-            intersect: None,
-        };
+        let mut arguments = intersect_arguments(coherent);
         let lanes = rays.lanes(valid);
         let mut found = 0;
         for first in (0..16).step_by(width) {

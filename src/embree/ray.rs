@@ -62,6 +62,23 @@ impl Ray {
     }
 }
 
+/// Returns a ray in Embree's layout with room for its hit.
+#[inline(always)]
+pub(super) fn without_hit(ray: sys::RTCRay) -> sys::RTCRayHit {
+    let hit = sys::RTCHit {
+        Ng_x: 0.0,
+        Ng_y: 0.0,
+        Ng_z: 0.0,
+        u: 0.0,
+        v: 0.0,
+        primID: sys::RTC_INVALID_GEOMETRY_ID,
+        geomID: sys::RTC_INVALID_GEOMETRY_ID,
+        instID: [sys::RTC_INVALID_GEOMETRY_ID],
+        instPrimID: [sys::RTC_INVALID_GEOMETRY_ID],
+    };
+    sys::RTCRayHit { ray, hit }
+}
+
 /// Intersection of a ray with a triangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hit {

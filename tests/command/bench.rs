@@ -8,8 +8,8 @@ const SCENES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes");
 #[test]
 fn every_benchmark_runs_and_exports() {
     let sandbox = Sandbox::new();
-    for (name, scene) in
-        [("shadow", Some("room.xml")), ("bounds", Some("room.xml")), ("bsdf", None), ("hsh", None)]
+    let room = Some("room.xml");
+    for (name, scene) in [("shadow", room), ("bounds", room), ("budget", room), ("bsdf", None), ("hsh", None)]
     {
         let mut arguments = vec!["bench", name];
         arguments.extend(scene);

@@ -132,6 +132,21 @@ fn assert_real(soup: &Soup, ray: &Ray, occluder: Occluder) {
 }
 
 #[test]
+fn prepared_rays_of_every_width_find_the_hits_of_packets() {
+    let soup = Soup::random(300, 9);
+    let packets = packets(&soup.rays(1024, 10));
+    for accel in devices().iter().map(|device| soup.build(device)) {
+        let count = |packet: &Rays16| u64::from(accel.occluded16(packet, 0x7ff7, false).count_ones());
+        let expected: u64 = packets.iter().map(count).sum();
+        for (width, coherent) in Width::ALL.into_iter().flat_map(|width| [(width, false), (width, true)]) {
+            let packets = || packets.iter().map(|packet| (packet, 0x7ff7));
+            assert_eq!(PreparedRays::for_hits(packets(), width).hits(&accel, coherent), expected);
+            assert_eq!(PreparedRays::new(packets(), width).occluded(&accel, coherent), expected);
+        }
+    }
+}
+
+#[test]
 fn only_valid_lanes_are_traced_and_written() {
     let soup = Soup::random(300, 7);
     let rays = soup.rays(256, 8);

@@ -41,6 +41,7 @@ impl Tally {
     /// Adds the counts of eye rays and of the specular chains behind them.
     pub fn eye(&mut self, counts: &EyeCounts) {
         self.rays(counts.rays);
+        self.stats.count("Eye/closest-hit rays", counts.rays);
         self.shadow_rays("Eye/shadow rays", counts.shadow_rays);
         self.work.dropped_branches += counts.overflow;
         self.stats.count(DROPPED_BRANCHES, counts.overflow);
