@@ -1,7 +1,7 @@
 //! Time of bare Embree queries for rays like those of the eye pass.
 //!
-//! Packets of a tile are made and stored, then traced, with nothing else between the queries. Making them has traced the
-//! eye rays already, so that the hierarchy around them is in the caches. The times are lower bounds.
+//! Packets of a tile are made and stored, then traced, with nothing else between the queries. Making them has traced
+//! the eye rays already, so that the hierarchy around them is in the caches. The times are lower bounds.
 
 use super::packets::{Packets, Source, TileRays};
 use crate::measure::Clock;

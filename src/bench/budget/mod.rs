@@ -1,5 +1,5 @@
-//! Budget of a picture: processor time of the default method by step, and the time that Embree alone needs for rays like
-//! those of the eye pass.
+//! Budget of a picture: processor time of the default method by step, and the time that Embree alone needs for rays
+//! like those of the eye pass.
 //!
 //! The picture is rendered as `render` does it, on one thread, without the pilot that chooses the method. Each round
 //! renders it with another seed, so that no virtual lights are reused, then traces the stored packets ([`bare`]).

@@ -1,8 +1,8 @@
 //! Packets of rays like those of the eye pass, of one tile of pixels at a time.
 //!
-//! Eye rays have the positions and numbers of the eye pass's first samples. At their hits, emitters are sampled with the
-//! random numbers of single vertices, and directions by the surfaces' BSDFs. Further edges, pilots, learned visibility,
-//! edges guided to mirrors and glass, and lobes that records leave to chains are left out.
+//! Eye rays have the positions and numbers of the eye pass's first samples. At their hits, emitters are sampled with
+//! the random numbers of single vertices, and directions by the surfaces' BSDFs. Left out are further edges, pilots,
+//! learned visibility, edges guided to mirrors and glass, and lobes that records leave to chains.
 
 use base::math::{LANES, U32x16, Vec3x16, first_lanes, lanes_in};
 use base::sampling::{Samplers16, cosine_hemisphere, hash};
