@@ -14,7 +14,8 @@ pub struct Samplers16 {
 
 impl Samplers16 {
     /// Returns the points of pair `pair` of dimensions, counted from 1: those of each sampler's `pair`-th call.
-    #[inline]
+    // Copies inlined into large functions do not become vector code.
+    #[inline(never)]
     pub fn point(&self, pair: u32) -> Vec2x16 {
         let dimension = pair.wrapping_mul(DIMENSION_STEP);
         let mut points = Vec2x16::default();
@@ -25,7 +26,7 @@ impl Samplers16 {
     }
 
     /// Returns the first coordinates of [`Samplers16::point`].
-    #[inline]
+    #[inline(never)]
     pub fn number(&self, pair: u32) -> F32x16 {
         let dimension = pair.wrapping_mul(DIMENSION_STEP);
         let mut numbers = [0.0; LANES];
