@@ -22,7 +22,7 @@ pub struct Candidate {
     pub bands: u8,
     /// Layers that lack a record here.
     pub missing: DirectIndirect<bool>,
-    /// Luminance of the irradiance known from records of the other layer.
+    /// Luminance of the irradiance known from other sources: records of the other layer, and sampled light.
     pub baseline_luminance: f32,
 }
 

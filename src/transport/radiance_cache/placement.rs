@@ -4,9 +4,8 @@
 //! is the overture of Ward's irradiance caching. Each step takes at most one sample per cell of one level of the
 //! index: the sample nearest to the middle of the uncovered samples in the cell.
 //!
-//! The records of the other layer mask the errors of a record.
-//!
-//! Deviations: sampled direct light masks no errors of records. A record lights points in shadow, too.
+//! Known light masks the errors of a record, as the other layer does in section 6. Sampled direct light counts only as
+//! far as the darkest part of the record's neighbourhood has it.
 
 use super::candidate::Candidate;
 use super::splat::Splat;
@@ -16,6 +15,9 @@ use base::math::luminance;
 use glam::Vec3;
 use rayon::prelude::*;
 use world::SurfacePoint;
+
+/// Levels up from a cell to the one whose darkest part the errors of its record are judged against.
+const BASELINE_LEVELS_UP: u32 = 2;
 
 /// Cells of the index that get candidates in one step: every second cell of a level, so that siblings take turns.
 #[derive(Clone, Copy, Debug)]
@@ -71,6 +73,10 @@ pub fn candidates(
             let sample = range.filter(uncovered).min_by(|a, b| distance(a).total_cmp(&distance(b)))?;
             let mut candidate =
                 candidate(targets, splats, sample, missing(targets, splats, cached, sample, 0.0));
+            // The footprint may reach beyond the cell.
+            let up = level.min(BASELINE_LEVELS_UP);
+            candidate.baseline_luminance +=
+                targets.darkest_baseline(targets.index.range(level - up, cell >> up));
             candidate.clearance = targets.clearance(&candidate.point, reach * candidate.spacing);
             Some(candidate)
         })
@@ -181,6 +187,34 @@ mod tests {
         let coarse =
             candidates(&targets, &splats, one(Origin::Direct), REACH, CandidateStep { level: 0, parity: 0 });
         assert!(coarse.len() == 1 && (coarse[0].point.position - Vec3::new(0.75, 0.5, 0.0)).length() < 0.04);
+    }
+
+    #[test]
+    fn light_known_in_the_darkest_part_of_the_neighbourhood_masks_errors() {
+        let floor = Floor::grid(32);
+        let lit = |i: usize| floor.points.geometry[i].position.x < 0.5;
+        let reflected = 3.0;
+        let targets = floor.targets().with_baseline(|i| if lit(i) { reflected } else { 0.0 });
+        let splats = splats(&targets, &Records::default());
+        let albedo = luminance(floor.points.surfaces[0].bsdf.base_brdf() * std::f32::consts::PI);
+        let (mut bright, mut dark) = (0, 0);
+        for parity in 0..2 {
+            for found in candidates(&targets, &splats, BOTH, REACH, CandidateStep { level: 6, parity }) {
+                let cell = floor.index.range(6, 0).len();
+                let wider = floor.index.range(4, found.sample as usize / (4 * cell));
+                if wider.clone().all(lit) {
+                    let expected = std::f32::consts::PI * reflected / albedo;
+                    assert!((found.baseline_luminance / expected - 1.0).abs() < 1e-4);
+                    bright += 1;
+                } else {
+                    assert_eq!(found.baseline_luminance, 0.0);
+                    dark += usize::from(lit(found.sample as usize));
+                }
+            }
+        }
+        assert_eq!((bright, dark), (32, 0), "the middle of the floor divides cells of that level");
+        let coarse = candidates(&targets, &splats, BOTH, REACH, CandidateStep { level: 0, parity: 0 });
+        assert_eq!(coarse[0].baseline_luminance, 0.0);
     }
 
     #[test]

@@ -11,6 +11,9 @@ use std::ops::Range;
 use world::SurfacePoint;
 use world::material::Bsdf;
 
+/// Number of parts into which a range of points is divided to find its darkest one.
+const PARTS: usize = 8;
+
 /// Minimum sine of the angle above a surface at which a point rises from it.
 const RISE: f32 = 0.05;
 
@@ -26,6 +29,8 @@ pub struct Targets<'a> {
     pub bands: Vec<u8>,
     /// True if records can light the point: it has a base, or a lobe broad enough for a series.
     pub cacheable: Vec<bool>,
+    /// Known light per point, expressed as the luminance of irradiance; empty if none is known.
+    baseline: Vec<f32>,
     /// Just visible difference of luminance per point, if known: of radiance on glossy surfaces lit by series, of
     /// irradiance elsewhere. Empty if unknown for all points.
     visible: Vec<Option<f32>>,
@@ -42,7 +47,18 @@ impl<'a> Targets<'a> {
             .zip(&bands)
             .map(|(surface, &bands)| bands > 0 || surface.bsdf.split_base(1.0).0 != Rgb::ZERO)
             .collect();
-        Targets { points, index, glossy, bands, cacheable, visible: Vec::new() }
+        Targets { points, index, glossy, bands, cacheable, baseline: Vec::new(), visible: Vec::new() }
+    }
+
+    /// Sets the luminance that each point reflects from other sources. Errors of records are judged relative to all
+    /// light.
+    pub fn with_baseline(mut self, luminance_of: impl Fn(usize) -> f32 + Sync) -> Targets<'a> {
+        let irradiance = |point: usize| {
+            let irradiance = self.irradiance(point, luminance_of(point));
+            if irradiance < f32::INFINITY { irradiance } else { 0.0 }
+        };
+        self.baseline = (0..self.points.len()).into_par_iter().map(irradiance).collect();
+        self
     }
 
     /// Sets the just visible difference of luminance at each position; `None` if it is unknown there.
@@ -98,6 +114,15 @@ impl<'a> Targets<'a> {
         let surface = &self.points.surfaces[point];
         let cos = surface.out.dot(self.points.geometry[point].normal);
         PI * radiance / luminance(surface.bsdf.albedo_at(cos))
+    }
+
+    /// Divides a range of points into parts and returns the least of the parts' mean known irradiances.
+    pub fn darkest_baseline(&self, range: Range<usize>) -> f32 {
+        let Some(baseline) = self.baseline.get(range).filter(|baseline| !baseline.is_empty()) else {
+            return 0.0;
+        };
+        let mean = |part: &[f32]| part.iter().sum::<f32>() / part.len() as f32;
+        baseline.chunks(baseline.len().div_ceil(PARTS)).map(mean).fold(f32::INFINITY, f32::min)
     }
 
     /// Iterates over the geometry of a range of points and the bands that they need.

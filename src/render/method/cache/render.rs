@@ -129,6 +129,9 @@ impl Settings {
         };
         let glossy = glossy.as_ref().and_then(|glossy| glossy.for_points(&eye.points, &cache));
         let mut targets = Targets::new(&eye.points, &eye.index, glossy);
+        if cache.samples_direct_light() {
+            targets = targets.with_baseline(|point| eye.known_luminance(point));
+        }
         if let Some(thresholds) = thresholds {
             targets = targets.with_visible(|position| thresholds.at(position));
         }
