@@ -69,9 +69,9 @@ impl<'w> Prepared<'w> {
     }
 }
 
-/// Returns the points whose indirect light photons are planned for; none if all emitters contribute alike.
+/// Returns the points whose indirect light photons are planned for; none if no light comes from infinitely far.
 fn seen(world: &World, eye: &EyePass) -> Vec<SurfacePoint> {
-    if !world.emitters.may_be_uneven() {
+    if !world.emitters.have_far() {
         return Vec::new();
     }
     let ShadingPoints { geometry, surfaces } = &eye.points;

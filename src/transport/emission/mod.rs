@@ -1,11 +1,10 @@
 //! Photons: paths that begin at the emitters of a scene.
 //!
 //! - [`PhotonEmitter`] begins paths at an emitter; [`target`] and [`lit_sphere`] direct them at the scene;
-//! - [`plan`] holds the shares of paths by emitter and their aims. [`planning`] makes a plan from pilot paths:
-//!   [`contributions`] re-weight emitters, [`openings`] aims paths from infinitely far;
+//! - [`plan`] holds the shares of paths by emitter and their aims. [`planning`] makes a plan from pilot paths, and
+//!   [`openings`] aims paths from infinitely far;
 //! - [`tracing`] follows the paths of a plan; [`trace_photons`] traces as many as are wanted.
 
-mod contributions;
 mod emitter;
 mod entries;
 mod far;

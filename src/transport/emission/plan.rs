@@ -8,9 +8,9 @@ use world::light::DiscreteDistribution;
 /// Plan for the photons of a scene. Flux is unbiased for any plan.
 pub(super) struct EmitterPlan<'w> {
     /// Emitters in proportion to their numbers of paths.
-    pub by_paths: DiscreteDistribution,
+    by_paths: DiscreteDistribution,
     /// Share of the paths that begin infinitely far.
-    pub far_share: f32,
+    far_share: f32,
     /// Aims of paths from infinitely far; `None` if these paths go anywhere.
     pub aims: Option<Openings<'w>>,
     /// Number of photons to trace.
@@ -18,7 +18,7 @@ pub(super) struct EmitterPlan<'w> {
 }
 
 impl<'w> EmitterPlan<'w> {
-    /// Creates the plan without re-weighting: paths in proportion to the flux of emitters.
+    /// Creates the plan without aims: paths in proportion to the flux of emitters.
     pub fn by_power(emitter: &PhotonEmitter, photons: usize) -> EmitterPlan<'w> {
         let by_paths = emitter.by_power.clone();
         EmitterPlan { far_share: far_share(emitter, &by_paths), by_paths, aims: None, photons }
@@ -31,11 +31,6 @@ impl<'w> EmitterPlan<'w> {
         };
         let by_paths = DiscreteDistribution::new((0..emitter.by_power.len()).map(weight));
         EmitterPlan { far_share: far_share(emitter, &by_paths), by_paths, aims: Some(aims), photons }
-    }
-
-    /// Returns the plan with other shares of the paths.
-    pub fn with_paths(self, emitter: &PhotonEmitter, by_paths: DiscreteDistribution) -> EmitterPlan<'w> {
-        EmitterPlan { far_share: far_share(emitter, &by_paths), by_paths, ..self }
     }
 
     /// Samples the beginning of a path; `None` if the emitter is dark there.

@@ -1,6 +1,5 @@
 //! Planning of photon tracing for the points that the eye sees, from pilot paths.
 
-use super::contributions;
 use super::openings::Openings;
 use super::plan::EmitterPlan;
 use super::tracing::PathTracer;
@@ -53,16 +52,10 @@ pub(super) fn plan<'w>(
             (planned.plan, planned.gain, anywhere) = (aimed, gain, share);
         }
     }
-    let shares = contributions::shares(emitter.world, &planned.plan.by_paths, seen, seed);
-    // Only photons from infinitely far become fewer. Without other shares most photons come from there.
-    let mut far_share = 1.0;
-    if let Some(shares) = shares {
-        planned.plan = planned.plan.with_paths(emitter, shares);
-        far_share = planned.plan.far_share;
-    }
+    // Most photons of aimed paths come from infinitely far.
     if planned.gain > 0.0 {
         let fewer = (GAIN_TO_REDUCE / planned.gain).max(MIN_UNAIMED_SHARE / anywhere).min(1.0);
-        planned.plan.photons = (photons as f32 * (1.0 - far_share * (1.0 - fewer))) as usize;
+        planned.plan.photons = (photons as f32 * fewer) as usize;
     }
     planned
 }

@@ -103,11 +103,6 @@ impl Emitters {
         self.environment.is_some() || self.deltas.iter().any(is_directional)
     }
 
-    /// Returns true if photons may contribute unevenly to the image. Light from infinitely far or several emitters do.
-    pub fn may_be_uneven(&self) -> bool {
-        self.areas.len() + self.deltas.len() + usize::from(self.environment.is_some()) > 1 || self.have_far()
-    }
-
     /// Returns true if there are enough emitters to learn their visibility.
     pub fn may_hide(&self) -> bool {
         self.areas.len() + self.deltas.len() >= MIN_HIDDEN
