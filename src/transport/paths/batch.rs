@@ -90,7 +90,7 @@ impl Batch {
             let surfaces = covered(world, &packet, &mut hits, found);
             packet.add_emitted(world, &surfaces, found, policy, &mut self.radiance);
             let step = Step { depth, max_depth, kept: &mut kept };
-            self.scatter(world, &mut packet, &surfaces, found, step, policy, counts);
+            self.scatter(world, &mut packet, Hit { surfaces: &surfaces, found }, step, policy, counts);
         }
         self.finish(world, kept, depth, policy, counts);
     }
@@ -173,18 +173,17 @@ impl Batch {
         let found = first_lanes(mem::take(&mut single.count));
         if found != 0 {
             let surfaces = covered(world, &single.packet, &mut single.hits, found);
-            self.scatter(world, &mut single.packet, &surfaces, found, step, policy, counts);
+            let hit = Hit { surfaces: &surfaces, found };
+            self.scatter(world, &mut single.packet, hit, step, policy, counts);
         }
     }
 
     /// Shades the hits of a packet one by one and stores the paths that continue.
-    #[expect(clippy::too_many_arguments)]
     fn scatter<'w, R: PathPolicy<'w>>(
         &mut self,
         world: &'w World,
         packet: &mut Packet,
-        surfaces: &Surfaces16,
-        found: u16,
+        Hit { surfaces, found }: Hit,
         step: Step,
         policy: &mut R,
         counts: &mut RayCounts,
@@ -332,6 +331,12 @@ impl SingleHits {
         self.count += 1;
         self.count == LANES
     }
+}
+
+/// Surfaces that a packet has hit in the lanes of `found`.
+struct Hit<'a> {
+    surfaces: &'a Surfaces16,
+    found: u16,
 }
 
 /// Number of the edge that is traced, and of paths stored so far behind it.
