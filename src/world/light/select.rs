@@ -148,8 +148,13 @@ impl EmitterChoice {
     fn probability_among<const N: usize>(&self, at: Receivers16, index: &U32x16, wanted: u16) -> F32x16 {
         let factors = at.emitter_factors();
         let mut probability = [1.0; LANES];
-        let mut candidates = [self.tree.len() as u32; LANES];
-        for lane in lanes_in(wanted).filter(|lane| index[*lane] != self.environment) {
+        // Lanes that are not wanted take any candidate; there may be none behind those of the tree.
+        let mut candidates = [0; LANES];
+        for lane in lanes_in(wanted) {
+            if index[lane] == self.environment {
+                candidates[lane] = self.by_power.len() as u32 - 1;
+                continue;
+            }
             let point = PointAndNormal { x: at.position.get(lane), n: at.normal.get(lane) };
             let factors = factors.map(|factors| factors[lane]);
             let (top, below) = self.tree.probability(index[lane] as usize, point, factors);

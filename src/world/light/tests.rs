@@ -334,6 +334,23 @@ fn densities_of_points_are_those_of_sampling_them() {
 }
 
 #[test]
+fn lanes_that_meet_no_lamp_have_no_density_among_any_number_of_lamps() {
+    for count in 1..40 {
+        let lamps = |i: usize| lamp(Vec3::X * i as f32, Vec3::Y, 0.5, Rgb::ONE, true);
+        let mut scene = Scene { meshes: (0..count).map(lamps).collect(), ..Scene::default() };
+        scene.meshes.push(Mesh { emission: None, ..lamp(Vec3::ZERO, Vec3::Y, 1.0, Rgb::ONE, false) });
+        let (emitters, dark) = (emitters(&scene), count as u32);
+        let (x, n) = (Vec3x16::splat(Vec3::Y * 3.0), Vec3x16::splat(Vec3::NEG_Y));
+        let at = Receivers16 { position: &x, normal: &n, learned: None };
+        let mesh = std::array::from_fn(|i| if i % 3 == 0 { i as u32 % dark } else { dark });
+        let densities = emitters.pdf_areas(at, &mesh, &[3.0; LANES], &[1.0; LANES]);
+        for (i, density) in densities.iter().enumerate() {
+            assert_eq!(*density > 0.0, i % 3 == 0, "{count} lamps, lane {i}: {density}");
+        }
+    }
+}
+
+#[test]
 fn rays_that_meet_a_lamp_are_never_said_to_miss_all_and_most_others_are() {
     let mut sampler = Sampler::new(7, 0);
     let (mut missing, rays) = (0, 4000);
