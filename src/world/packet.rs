@@ -152,13 +152,13 @@ impl World {
         let at = self.textured(s, lanes);
         let uv = |i: usize| at[i].unwrap_or_else(|| self.coordinates(s, i));
         let covered = |i: usize| self.covered(s.mesh[i], s.triangle[i], s.footprint.get(i));
-        let (mut places, mut count) = ([(Vec2::ZERO, 0.0); LANES], 0);
-        for lane in lanes_in(lanes) {
-            places[count] = (uv(lane), covered(lane));
-            count += 1;
-        }
-        if let Some(mean) = self.materials.mean(id, &places[..count]) {
-            return (mean, lanes);
+        if self.materials.averages_texels(id) {
+            let (mut places, mut count) = ([(Vec2::ZERO, 0.0); LANES], 0);
+            for lane in lanes_in(lanes) {
+                places[count] = (uv(lane), covered(lane));
+                count += 1;
+            }
+            return (self.materials.mean(id, &places[..count]), lanes);
         }
         let bsdf = |i: usize| self.materials.at_coordinates(id, || uv(i), || covered(i));
         let (first_bsdf, mut taken) = (bsdf(first), 1 << first);

@@ -8,17 +8,11 @@
 //! proportion to the light they may carry, with weights that preserve the mean.
 
 use super::points::{PointGeometry, PointSurface, shading_point};
-use crate::paths::ChainEnd;
+use crate::paths::{ChainEnd, MAX_DISTANCE, MAX_HEIGHT, MIN_OUT_COS};
 use base::math::{Rgb, luminance};
 
-/// Minimum cosine between normals, and between directions towards the eye, of samples that are merged: 11 degrees.
+/// Minimum cosine between normals of samples that are merged: 11 degrees.
 const MIN_COS: f32 = 0.98;
-
-/// Maximum distance between samples that are merged, in spacings.
-const MAX_DISTANCE: f32 = 16.0;
-
-/// Maximum distance of a sample from the plane of another that it is merged with, in spacings.
-const MAX_HEIGHT: f32 = 0.5;
 
 /// Mean number of points per pixel beyond mirrors, glass and sharp lobes, if all light of the pixel comes through
 /// them.
@@ -62,7 +56,7 @@ impl<'w> MergedPoint<'w> {
             && mine.material() == others.material()
             && mine.same_lobes(others)
             && a.normal.dot(b.normal) > MIN_COS
-            && self.surface.out.dot(other.surface.out) > MIN_COS
+            && self.surface.out.dot(other.surface.out) > MIN_OUT_COS
             && between.length_squared() < (MAX_DISTANCE * a.spacing).powi(2)
             && a.normal.dot(between).abs() < MAX_HEIGHT * a.spacing
     }

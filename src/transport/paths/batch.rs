@@ -127,6 +127,9 @@ impl Batch {
                     self.scatter_single(world, &mut single, step, policy, counts);
                 }
             }
+            if grouped == 0 {
+                continue;
+            }
             let directions = packet.rays.directions();
             let (surfaces, pixel) = (&surfaces, &packet.samplers.seed);
             let first = FirstHits16 { surfaces, directions: &directions, pixel, spacing };

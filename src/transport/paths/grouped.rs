@@ -13,7 +13,6 @@ use super::vertex::{continue_cone, first_pair, next_class, segments};
 use base::math::{F32x16, LANES, Rgb, Vec3x16, blend, lanes_in, mask_of};
 use base::sampling::power_heuristic;
 use world::light::{DirectSamples16, Receivers16};
-use world::material::LobeSet;
 use world::{Surfaces16, World, shadow};
 
 /// Vertex number of first hits.
@@ -223,7 +222,7 @@ impl<'w> GroupedVertices<'_, 'w> {
             for i in 0..LANES {
                 direction.set(i, group.frame.to_world(samples.wi.get(i)));
             }
-            if group.chained != LobeSet::default() {
+            if !group.chained.is_empty() {
                 let values = group.bsdf.eval_lobes16(group.chained, &samples.wi);
                 let draws = packet.samplers.point(pair + 3).y;
                 for lane in lanes_in(lanes & samples.going_on()) {

@@ -19,14 +19,14 @@ const MIN_COS: f32 = 0.995;
 /// Maximum angle between the normals of a group, as a share of the roughness α of its sharpest lobe.
 const ALPHA_SHARE: f32 = 0.25;
 
-/// Minimum cosine between the directions towards the eye of a group.
-const MIN_OUT_COS: f32 = 0.98;
+/// Minimum cosine between the directions towards the eye of samples that are one shading point: 11 degrees.
+pub(crate) const MIN_OUT_COS: f32 = 0.98;
 
-/// Maximum distance between lanes of a group, in spacings.
-const MAX_DISTANCE: f32 = 16.0;
+/// Maximum distance between samples that are one shading point, in spacings.
+pub(crate) const MAX_DISTANCE: f32 = 16.0;
 
-/// Maximum distance of a lane from the plane of the first, in spacings.
-const MAX_HEIGHT: f32 = 0.5;
+/// Maximum distance of a sample from the plane of another of one shading point, in spacings.
+pub(crate) const MAX_HEIGHT: f32 = 0.5;
 
 /// Lanes that share one BSDF.
 pub(super) struct Group<'w> {

@@ -19,5 +19,6 @@ mod vertex;
 pub use batch::Batch;
 pub use counts::RayCounts;
 pub use estimand::{Estimand, eye_sampler};
+pub(crate) use groups::{MAX_DISTANCE, MAX_HEIGHT, MIN_OUT_COS};
 pub use policy::{ChainEnd, LightSamples, PathPolicy, ScatteredEdges};
 pub use start::{PathStart, start};

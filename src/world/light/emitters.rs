@@ -63,7 +63,8 @@ impl Emitters {
         let spheres: Vec<(Vec3, f32)> = areas.iter().map(sphere).collect();
         let radii_sq = areas.iter().zip(&spheres).map(|(light, (_, radius_sq))| (light.power, *radius_sq));
         let of_deltas = deltas.iter().map(|light| (delta_power(light, 0.5 * diagonal), 0.0));
-        let few_directions = environment.is_none() && look_small(radii_sq.chain(of_deltas), 0.5 * diagonal);
+        let few_directions =
+            environment.is_none() && radii_are_small(radii_sq.chain(of_deltas), 0.5 * diagonal);
         Emitters { spheres, areas, deltas, environment, light_of_mesh, few_directions, choice }
     }
 
@@ -181,7 +182,7 @@ impl Emitters {
 
 /// Returns true if emitters of the given powers and squared radii look small, on average by power, from the distance
 /// `radius`.
-fn look_small(emitters: impl Iterator<Item = (f32, f32)>, radius: f32) -> bool {
+fn radii_are_small(emitters: impl Iterator<Item = (f32, f32)>, radius: f32) -> bool {
     let add = |(all, sum): (f64, f64), (power, radius_sq): (f32, f32)| {
         (all + f64::from(power), sum + f64::from(power) * f64::from(radius_sq))
     };

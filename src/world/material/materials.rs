@@ -103,16 +103,21 @@ impl Materials {
         }
     }
 
-    /// Returns the mean of a material over places, each given by texture coordinates and the side of the square that it
-    /// covers; `None` if it is not the material of the mean texels.
+    /// Returns true if the mean of a material over places is the material of the mean texels.
     #[inline]
-    pub fn mean(&self, id: MaterialId, places: &[(Vec2, f32)]) -> Option<Bsdf<'_>> {
-        let entry = &self.entries[id.0 as usize];
+    pub fn averages_texels(&self, id: MaterialId) -> bool {
+        !self.entries[id.0 as usize].filtered.is_empty()
+    }
+
+    /// Returns the material of the mean texels over places, each given by texture coordinates and the side of the square
+    /// that it covers.
+    #[inline]
+    pub fn mean(&self, id: MaterialId, places: &[(Vec2, f32)]) -> Bsdf<'_> {
         let texel = |id: TextureId| {
             let sum: Rgb = places.iter().map(|(uv, covered)| self.textures.lookup(id, *uv, *covered)).sum();
             sum / places.len() as f32
         };
-        (!entry.filtered.is_empty()).then(|| entry.coloured.bsdf(&texel))
+        self.entries[id.0 as usize].coloured.bsdf(&texel)
     }
 
     fn textured<'m>(&'m self, entry: &'m MaterialEntry, uv: Vec2, covered: f32) -> Bsdf<'m> {
