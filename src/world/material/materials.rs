@@ -109,8 +109,8 @@ impl Materials {
         !self.entries[id.0 as usize].filtered.is_empty()
     }
 
-    /// Returns the material of the mean texels over places, each given by texture coordinates and the side of the square
-    /// that it covers.
+    /// Returns the material of the mean texels over places. Each is given by texture coordinates and the side of the
+    /// square that it covers.
     #[inline]
     pub fn mean(&self, id: MaterialId, places: &[(Vec2, f32)]) -> Bsdf<'_> {
         let texel = |id: TextureId| {

@@ -101,31 +101,37 @@ impl Images {
         squares.sum::<f64>() / (n * (n - 1.0))
     }
 
-    /// Returns the mean over all images and pixels, and its standard error.
-    fn mean(&self) -> [f64; 2] {
-        let all: Vec<f64> =
-            self.0.iter().map(|image| image.iter().sum::<f64>() / image.len() as f64).collect();
-        let n = all.len() as f64;
-        let mean = all.iter().sum::<f64>() / n;
-        let squares = all.iter().map(|v| (v - mean).powi(2)).sum::<f64>();
-        [mean, (squares / (n * (n - 1.0))).sqrt()]
+    /// Returns the mean over all images and pixels.
+    fn mean(&self) -> f64 {
+        self.means().iter().sum::<f64>() / self.0[0].len() as f64
+    }
+
+    /// Returns the squared distance between the means of pixels.
+    fn distance(&self, other: &Images) -> f64 {
+        self.means().iter().zip(other.means()).map(|(a, b)| (a - b).powi(2)).sum()
     }
 }
 
-/// Asserts that groups have no more noise than single hits and no bias: their means differ as independent means do.
-fn assert_unbiased(world: &WorldAndView, what: &str) {
-    let (single, grouped) = (Images::new(world, false, 1), Images::new(world, true, 101));
-    let ([a, a_error], [b, b_error]) = (single.mean(), grouped.mean());
-    // Five standard errors, each known to a third of itself.
-    assert!((a - b).abs() < 5.0 * (a_error.hypot(b_error)), "{what}: {a} {a_error} {b} {b_error}");
-    let (mine, theirs) = (single.variance(), grouped.variance());
-    assert!(theirs < 1.25 * mine, "{what}: noise {theirs} of {mine}");
-    let square: f64 = single.means().iter().zip(grouped.means()).map(|(a, b)| (a - b).powi(2)).sum();
-    assert!(square < 1.25 * (mine + theirs), "{what}: {square} of {mine} + {theirs}");
+/// Asserts that groups have the mean of single hits, no more noise, and a small bias of pixels.
+///
+/// Single hits with the seeds of the groups tell how far independent images are apart. Rare bright paths make any such
+/// distance uncertain by itself.
+fn assert_alike(world: &WorldAndView, what: &str) {
+    let [first, single, grouped] =
+        [(false, 1), (false, 101), (true, 101)].map(|(in_groups, seed)| Images::new(world, in_groups, seed));
+    let (theirs, mine) = (single.mean(), grouped.mean());
+    assert!((mine / theirs - 1.0).abs() < 1e-3, "{what}: {mine} {theirs}");
+    let noise = grouped.variance() / single.variance();
+    assert!(noise < 1.1, "{what}: {noise}");
+    // A pixel of this film shows about a sixth of the ball's radius. The bias there is to be less than half of the
+    // noise of 64 samples.
+    let square_of_bias = grouped.distance(&first) - single.distance(&first);
+    let square_of_noise = single.variance() * f64::from(Images::SEEDS);
+    assert!(square_of_bias < 0.25 * square_of_noise, "{what}: {square_of_bias} {square_of_noise}");
 }
 
 #[test]
-fn groups_on_curved_and_glossy_surfaces_have_no_more_noise_than_single_hits_and_no_bias() {
+fn groups_on_curved_and_glossy_surfaces_have_little_bias_and_no_more_noise_than_single_hits() {
     let mut mixed = rough_metal(0.05, 0.4);
     mixed.two_sided = true;
     for (what, ball) in [
@@ -137,7 +143,7 @@ fn groups_on_curved_and_glossy_surfaces_have_no_more_noise_than_single_hits_and_
         ("two sides", mixed),
     ] {
         let world = room_with_ball(Some(ball));
-        assert_unbiased(&world, what);
+        assert_alike(&world, what);
         let [single, grouped] = [false, true].map(|in_groups| Traced::new(&world, in_groups, 1, 1));
         assert!(grouped.ends < single.ends && (grouped.weight / single.weight - 1.0).abs() < 1e-3, "{what}");
     }
@@ -155,5 +161,5 @@ fn groups_reflect_the_mean_of_their_texels() {
     let lamp = quad(Vec3::new(-1.0, -1.0, 3.0), Vec3::Y * 2.0, Vec3::X * 2.0, grey);
     scene.meshes.push(emitting(lamp, Rgb::ONE));
     let world = world(scene);
-    assert_unbiased(&world, "a checker");
+    assert_alike(&world, "a checker");
 }
