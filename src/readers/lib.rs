@@ -28,6 +28,7 @@ mod realise;
 mod requirements_tests;
 mod selection;
 mod sky;
+mod statements;
 
 use error::Log;
 use finish::{divide, recentre, sanitize};
