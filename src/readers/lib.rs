@@ -19,6 +19,8 @@ mod finish;
 mod gltf;
 mod layers;
 mod mesh;
+#[cfg(test)]
+mod mirrored_tests;
 mod mitsuba;
 mod native;
 mod options;

@@ -12,6 +12,7 @@
 mod accessor;
 mod animation;
 mod camera;
+mod container;
 mod document;
 mod importer;
 mod light;

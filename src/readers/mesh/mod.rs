@@ -4,7 +4,9 @@
 //! does.
 //!
 //! Front sides: Mitsuba uses the shading normal (for emission and one-sided materials), this renderer the winding. So
-//! the winding is reversed if the vertex normals oppose it, as with mirrored transforms.
+//! the winding is reversed if the vertex normals oppose it. A transform that mirrors reverses the winding, too: the
+//! outside stays outside, with or without normals. This is the rule of glTF 2.0 and of Mitsuba 3 later than 3.9.1.
+//! Mitsuba up to 3.9.1 turns mirrored meshes without normals inside out.
 
 pub mod mtl;
 pub mod obj;
@@ -18,7 +20,7 @@ pub(crate) use smooth::vertex_normals as smooth_normals;
 
 use crate::draft::DraftMesh;
 use base::math::unit;
-use glam::{DMat4, DVec3, Vec2, Vec3};
+use glam::{DMat3, DMat4, DVec3, Vec2, Vec3};
 
 /// A mesh in object coordinates, as its file describes it.
 #[derive(Clone, Debug, Default)]
@@ -68,35 +70,40 @@ pub fn place(raw: RawMesh, how: &Placement) -> DraftMesh {
     if how.v_down {
         mesh.uvs.iter_mut().for_each(|uv| uv.y = 1.0 - uv.y);
     }
+    let linear = DMat3::from_mat4(how.to_world);
+    let is_mirrored = linear.determinant() < 0.0;
     if how.normals != Normals::Flat {
         if raw.normals.is_empty() && how.normals == Normals::Smooth {
             mesh.normals = smooth::vertex_normals(&mesh.positions, &mesh.triangles);
+            if is_mirrored {
+                mesh.normals.iter_mut().for_each(|n| *n = -*n);
+            }
         } else {
-            let linear = glam::DMat3::from_mat4(how.to_world);
-            // Cofactors replace the inverse: the direction agrees up to the determinant's sign, and nothing is divided
-            // by 0.
-            let sign = if linear.determinant() < 0.0 { -1.0 } else { 1.0 };
-            let cofactor = cofactor(&linear) * sign;
+            let to_normal = normal_matrix(&linear);
             let normals =
-                raw.normals.iter().map(|n| unit(cofactor * n.as_dvec3()).unwrap_or_default().as_vec3());
+                raw.normals.iter().map(|n| unit(to_normal * n.as_dvec3()).unwrap_or_default().as_vec3());
             mesh.normals = normals.collect();
         }
     }
     if mesh.uvs.is_empty() && how.needs_uv {
         give_barycentric_uvs(&mut mesh);
     }
+    if is_mirrored != how.flip_normals {
+        mesh.triangles.iter_mut().for_each(|t| t.swap(1, 2));
+    }
     if how.flip_normals {
-        if mesh.normals.is_empty() {
-            mesh.triangles.iter_mut().for_each(|t| t.swap(1, 2));
-        }
         mesh.normals.iter_mut().for_each(|n| *n = -*n);
     }
     follow_normals(&mut mesh);
     mesh
 }
 
-fn cofactor(m: &glam::DMat3) -> glam::DMat3 {
-    glam::DMat3::from_cols(m.y_axis.cross(m.z_axis), m.z_axis.cross(m.x_axis), m.x_axis.cross(m.y_axis))
+/// Returns a multiple of the inverse transpose of `m`, which transforms normals; the outside stays outside.
+///
+/// Cofactors replace the inverse: the direction agrees up to the determinant's sign, and nothing is divided by 0.
+pub(crate) fn normal_matrix(m: &DMat3) -> DMat3 {
+    let sign = if m.determinant() < 0.0 { -1.0 } else { 1.0 };
+    DMat3::from_cols(m.y_axis.cross(m.z_axis), m.z_axis.cross(m.x_axis), m.x_axis.cross(m.y_axis)) * sign
 }
 
 /// Duplicates shared vertices, and gives each triangle (0,0), (1,0), (0,1) in Mitsuba's convention of v downwards.

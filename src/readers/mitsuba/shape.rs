@@ -117,10 +117,13 @@ impl Converter<'_> {
         let bsdfs = self.tagged(shape, "bsdf")?;
         let material = self.material_of_shape(bsdfs.first(), emission.is_some())?;
         let textured = self.is_textured(material) || emission.is_some_and(|e| e.texture.is_some());
+        let to_world = shape.transform("to_world")?.unwrap_or(DMat4::IDENTITY);
+        // Mitsuba turns a sphere inside out if the sphere's own transform mirrors it.
+        let is_turned = shape.plugin == "sphere" && to_world.determinant() < 0.0;
         let placement = Placement {
-            to_world: outer * shape.transform("to_world")?.unwrap_or(DMat4::IDENTITY),
+            to_world: outer * to_world,
             normals: if shape.boolean("face_normals", false)? { Normals::Flat } else { Normals::Smooth },
-            flip_normals: shape.boolean("flip_normals", false)?,
+            flip_normals: shape.boolean("flip_normals", false)? != is_turned,
             v_down,
             needs_uv: textured,
         };

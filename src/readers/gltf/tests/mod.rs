@@ -1,3 +1,4 @@
+mod container;
 mod model;
 mod samples;
 mod slow_damage;
