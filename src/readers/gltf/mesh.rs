@@ -30,9 +30,6 @@ pub(super) fn read(
     if attribute(Semantic::Colors(0)).is_some() {
         report.lacks("colours of vertices are not modelled", "their factor is left out", what);
     }
-    if primitive.targets.as_ref().is_some_and(|targets| !targets.is_empty()) {
-        report.lacks("morph targets are not modelled", "the base shape stands", what);
-    }
     let Some(positions) = attribute(Semantic::Positions) else {
         return Err(document.wrong(format!("{what} has no positions")));
     };
@@ -53,7 +50,7 @@ pub(super) fn read(
         }
     }
     let corners = match primitive.indices {
-        Some(indices) => document.integers(indices, what)?,
+        Some(indices) => document.integers::<1>(indices, what)?.into_flattened(),
         None => (0..positions.len() as u32).collect(),
     };
     Ok(Some(RawMesh {

@@ -22,8 +22,8 @@ impl SceneBuilder<'_> {
         if let Some(path) = self.model(text) {
             return self.import(&path, text, &place);
         }
-        if text.lumens_per_watt.is_some() || text.fps.is_some() {
-            let what = "lumens_per_watt and fps mean nothing for a mesh that is no glTF model";
+        if text.lumens_per_watt.is_some() || text.fps.is_some() || text.time.is_some() {
+            let what = "lumens_per_watt, fps and time mean nothing for a mesh that is no glTF model";
             return Err(place.wrong(what, "leave them out"));
         }
         let (name, geometry) = self.geometry(text, &place)?;
@@ -74,6 +74,7 @@ impl SceneBuilder<'_> {
             emission,
             lumens_per_watt: positive(text.lumens_per_watt, "lumens_per_watt")?.map(|lumens| lumens as f32),
             fps: positive(text.fps, "fps")?.unwrap_or(FRAMES_PER_SECOND),
+            time: text.time.map(f64::from),
             camera: None,
         };
         let imported = gltf::import(path, place, &options, &mut self.contents, self.log)?;

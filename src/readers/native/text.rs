@@ -241,6 +241,8 @@ pub(super) struct MeshText {
     pub lumens_per_watt: Option<Number>,
     /// Frames per second of a glTF model's animation.
     pub fps: Option<Number>,
+    /// Time in seconds of a glTF model's animation whose pose the model takes.
+    pub time: Option<Number>,
     pub material: Option<Spanned<String>>,
     #[serde(default)]
     pub transform: Vec<Spanned<StepText>>,

@@ -1,6 +1,7 @@
 mod container;
 mod model;
 mod samples;
+mod skin;
 mod slow_damage;
 
 use super::super::{LoadOptions, Loaded, SceneError, Severity, load};
