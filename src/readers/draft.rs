@@ -3,7 +3,7 @@
 //! [`crate::finish`] turns a [`Draft`] into a [`Scene`].
 
 use crate::Location;
-use glam::{DVec3, Vec2, Vec3};
+use glam::{DVec3, Vec2, Vec3, Vec4};
 use scene::{DeltaLight, Emission, MaterialId, PixelFilter, Projection, Scene};
 
 /// Width and height in pixels of films without a size.
@@ -61,6 +61,8 @@ pub(crate) struct DraftMesh {
     pub normals: Vec<Vec3>,
     /// Texture coordinates of each vertex, v upwards, or empty.
     pub uvs: Vec<Vec2>,
+    /// Tangent of each vertex (see [`scene::Mesh::tangents`]), or empty.
+    pub tangents: Vec<Vec4>,
     pub triangles: Vec<[u32; 3]>,
     pub material: MaterialId,
     pub emission: Option<Emission>,

@@ -3,7 +3,7 @@
 use super::material::MaterialId;
 use super::texture::TextureId;
 use base::math::Rgb;
-use glam::{Vec2, Vec3};
+use glam::{Vec2, Vec3, Vec4};
 
 /// An indexed triangle mesh with one material.
 #[derive(Clone, Debug)]
@@ -19,6 +19,11 @@ pub struct Mesh {
     pub normals: Vec<Vec3>,
     /// Texture coordinates of each vertex, v upwards, or empty for barycentric coordinates.
     pub uvs: Vec<Vec2>,
+    /// Tangent of each vertex, or empty for the direction of growing u.
+    ///
+    /// Normal maps and anisotropy have their x axis along x, y, z; the normal × this axis × the sign of w is their y
+    /// axis. A tangent of zeros stands for the direction of growing u.
+    pub tangents: Vec<Vec4>,
     /// Vertex indices, counter-clockwise seen from the front. All are in range.
     pub triangles: Vec<[u32; 3]>,
     /// Material of every triangle.
@@ -55,6 +60,18 @@ impl Mesh {
         }
         let [n0, n1, n2] = vertices.map(|i| self.normals[i as usize]);
         Some(n0 * (1.0 - b.x - b.y) + n1 * b.x + n2 * b.y)
+    }
+
+    /// Returns the interpolated tangent, not of unit length; `None` if the mesh has no tangents.
+    ///
+    /// `b` are the barycentric weights of the last two of a triangle's `vertices`.
+    #[inline]
+    pub fn tangent(&self, vertices: &[u32; 3], b: Vec2) -> Option<Vec4> {
+        if self.tangents.is_empty() {
+            return None;
+        }
+        let [t0, t1, t2] = vertices.map(|i| self.tangents[i as usize]);
+        Some(t0 * (1.0 - b.x - b.y) + t1 * b.x + t2 * b.y)
     }
 
     /// Returns the texture coordinates, or `b` if the mesh has none.

@@ -117,7 +117,8 @@ impl Requirements {
             r.triangles += mesh.triangles.len();
             r.memory.geometry += 2 * 12 * (mesh.positions.len() + mesh.triangles.len())
                 + 12 * mesh.normals.len()
-                + 8 * mesh.uvs.len();
+                + 8 * mesh.uvs.len()
+                + 16 * mesh.tangents.len();
             if let Some(emission) = mesh.emission {
                 r.emitting_triangles += mesh.triangles.len();
                 r.lights += 1;

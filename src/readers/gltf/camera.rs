@@ -134,7 +134,7 @@ impl Viewer<'_> {
             let moves = !matches!(channel.target.path, Checked::Valid(Property::MorphTargetWeights));
             !(moves && is_on_the_way(channel.target.node.value()))
         };
-        // Of a model that is posed, the first animation is read.
+        // The first animation of a model that is posed is read.
         for animation in self.document.root.animations.iter().skip(usize::from(self.is_posed)) {
             if animation.channels.iter().any(is_still) {
                 let name = animation.name.as_deref().unwrap_or_default();

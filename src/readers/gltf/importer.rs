@@ -17,7 +17,7 @@ use crate::selection::PartSelection;
 use glam::DMat4;
 use gltf_json::Index;
 use gltf_json::mesh::Mesh;
-use scene::{Emission, MaterialId};
+use scene::{Emission, MaterialId, Relief};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -175,6 +175,14 @@ impl Importer<'_> {
         })
     }
 
+    /// True if the material of an appearance, or that which replaces it, knows a direction on its surface.
+    fn has_direction(&self, appearance: Appearance) -> bool {
+        let material = self.options.material.unwrap_or(appearance.material);
+        self.contents.materials.get(material.0 as usize).is_some_and(|material| {
+            matches!(material.relief, Some(Relief::Normals { .. })) || material.anisotropy_angle().is_some()
+        })
+    }
+
     /// Returns the primitives of a mesh; each mesh is read once.
     fn primitives(&mut self, index: Index<Mesh>) -> Result<Vec<Part>, SceneError> {
         if let Some(primitives) = self.meshes.get(&index.value()) {
@@ -186,7 +194,8 @@ impl Importer<'_> {
         for (i, primitive) in mesh.primitives.iter().enumerate() {
             let what = primitive_name(mesh, index, i);
             let surface = self.surface(primitive.material)?;
-            let raw = mesh::read(document, primitive, surface.uv_set, &what, &mut self.report)?;
+            let has_tangents = self.has_direction(surface.appearance);
+            let raw = mesh::read(document, primitive, surface.uv_set, has_tangents, &what, &mut self.report)?;
             let part = |raw| Part { primitive: i, raw: Arc::new(raw), appearance: surface.appearance };
             primitives.extend(raw.map(part));
         }

@@ -4,17 +4,19 @@ use super::document::GltfFile;
 use super::report::Findings;
 use crate::error::SceneError;
 use crate::mesh::RawMesh;
-use glam::{DVec3, Vec2, Vec3};
+use glam::{DVec3, Vec2, Vec3, Vec4};
 use gltf_json::mesh::{Mode, Primitive, Semantic};
 use gltf_json::validation::Checked;
 
-/// Reads a primitive with the texture coordinates of set `uv_set`; `what` names it in messages.
+/// Reads a primitive with the texture coordinates of set `uv_set`; `what` names it in messages. Tangents are read if
+/// `with_tangents`.
 ///
 /// Returns `None` for points and lines.
 pub(super) fn read(
     document: &GltfFile,
     primitive: &Primitive,
     uv_set: u32,
+    with_tangents: bool,
     what: &str,
     report: &mut Findings,
 ) -> Result<Option<RawMesh>, SceneError> {
@@ -42,7 +44,14 @@ pub(super) fn read(
         Some(uvs) => document.vectors::<2>(uvs, what)?,
         None => Vec::new(),
     };
-    for (name, length) in [("normals", normals.len()), ("texture coordinates", uvs.len())] {
+    // Tangents without normals do not count (glTF 2.0 specification, section 3.7.2.1).
+    let tangents = match attribute(Semantic::Tangents) {
+        Some(tangents) if with_tangents && !normals.is_empty() => document.vectors::<4>(tangents, what)?,
+        _ => Vec::new(),
+    };
+    for (name, length) in
+        [("normals", normals.len()), ("texture coordinates", uvs.len()), ("tangents", tangents.len())]
+    {
         if length != 0 && length != positions.len() {
             return Err(
                 document.wrong(format!("{what} has {} vertices and {length} {name}", positions.len()))
@@ -57,8 +66,9 @@ pub(super) fn read(
         positions: positions.iter().map(|p| DVec3::from(p.map(f64::from))).collect(),
         normals: normals.into_iter().map(Vec3::from).collect(),
         uvs: uvs.into_iter().map(Vec2::from).collect(),
+        tangents: tangents.into_iter().map(Vec4::from).collect(),
         triangles: triangles(&corners, mode),
-        groups: Vec::new(),
+        ..RawMesh::default()
     }))
 }
 

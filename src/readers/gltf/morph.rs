@@ -34,6 +34,14 @@ pub(super) fn add_targets(
             check(moved.len(), raw.normals.len())?;
             raw.normals.iter_mut().zip(moved).for_each(|(n, by)| *n += Vec3::from(by) * weight);
         }
+        if let (Some(tangents), false) = (target.tangents, raw.tangents.is_empty()) {
+            let moved = document.vectors::<3>(tangents, &what)?;
+            check(moved.len(), raw.tangents.len())?;
+            raw.tangents
+                .iter_mut()
+                .zip(moved)
+                .for_each(|(t, by)| *t += (Vec3::from(by) * weight).extend(0.0));
+        }
     }
     Ok(())
 }

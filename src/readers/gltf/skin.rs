@@ -44,8 +44,14 @@ pub(super) fn joints(
     skin.joints.iter().enumerate().map(joint).collect()
 }
 
-/// Joints of the vertices of a primitive and their weights, by sets of four.
-pub(super) struct Influences(Vec<(Vec<[u32; 4]>, Vec<[f32; 4]>)>);
+/// Joints of the vertices of a primitive, by sets.
+pub(super) struct Influences(Vec<InfluenceSet>);
+
+/// Four joints of each vertex.
+struct InfluenceSet {
+    joints: Vec<[u32; 4]>,
+    weights: Vec<[f32; 4]>,
+}
 
 impl Influences {
     /// Reads the joints and weights of a primitive of `vertices` vertices; `what` names it in messages.
@@ -76,7 +82,7 @@ impl Influences {
                 let counts = format!("{} joints and {} weights", joints.len(), weights.len());
                 return Err(document.wrong(format!("{what} has {vertices} vertices, and {counts} of them")));
             }
-            sets.push((joints, weights));
+            sets.push(InfluenceSet { joints, weights });
         }
         Ok((!sets.is_empty()).then_some(Influences(sets)))
     }
@@ -84,8 +90,8 @@ impl Influences {
     /// Returns the transform of a vertex; that of its first joint if all weights are 0.
     fn transform(&self, vertex: usize, joints: &[DMat4]) -> Option<DMat4> {
         let (mut sum, mut total) = (DMat4::ZERO, 0.0);
-        for (of, weights) in &self.0 {
-            for (joint, weight) in of[vertex].iter().zip(weights[vertex]) {
+        for set in &self.0 {
+            for (joint, weight) in set.joints[vertex].iter().zip(set.weights[vertex]) {
                 if weight != 0.0 {
                     sum += *joints.get(*joint as usize)? * f64::from(weight);
                     total += f64::from(weight);
@@ -96,7 +102,7 @@ impl Influences {
         if total != 0.0 {
             Some(sum * (1.0 / total))
         } else {
-            joints.get(self.0[0].0[vertex][0] as usize).copied()
+            joints.get(self.0[0].joints[vertex][0] as usize).copied()
         }
     }
 }
@@ -122,7 +128,12 @@ pub(super) fn bend(
         if let Some(normal) = raw.normals.get_mut(vertex) {
             *normal = unit(normal_matrix(&linear) * normal.as_dvec3()).unwrap_or_default().as_vec3();
         }
-        is_mirrored.push(linear.determinant() < 0.0);
+        let mirrors = linear.determinant() < 0.0;
+        if let Some(tangent) = raw.tangents.get_mut(vertex) {
+            let along = unit(linear * tangent.truncate().as_dvec3()).unwrap_or_default().as_vec3();
+            *tangent = along.extend(if mirrors { -tangent.w } else { tangent.w });
+        }
+        is_mirrored.push(mirrors);
     }
     let mirrored = |i: u32| is_mirrored.get(i as usize).is_some_and(|mirrored| *mirrored);
     for triangle in &mut raw.triangles {

@@ -20,7 +20,7 @@ pub(crate) use smooth::vertex_normals as smooth_normals;
 
 use crate::draft::DraftMesh;
 use base::math::unit;
-use glam::{DMat3, DMat4, DVec3, Vec2, Vec3};
+use glam::{DMat3, DMat4, DVec3, Vec2, Vec3, Vec4};
 
 /// A mesh in object coordinates, as its file describes it.
 #[derive(Clone, Debug, Default)]
@@ -30,6 +30,8 @@ pub(crate) struct RawMesh {
     pub normals: Vec<Vec3>,
     /// Texture coordinates of each vertex, or empty; v as in the file.
     pub uvs: Vec<Vec2>,
+    /// Tangent of each vertex (see [`scene::Mesh::tangents`]), or empty.
+    pub tangents: Vec<Vec4>,
     pub triangles: Vec<[u32; 3]>,
     /// Material groups: name and first triangle, ascending.
     pub groups: Vec<(String, usize)>,
@@ -85,6 +87,12 @@ pub fn place(raw: RawMesh, how: &Placement) -> DraftMesh {
             mesh.normals = normals.collect();
         }
     }
+    let handedness = if is_mirrored != how.flip_normals { -1.0 } else { 1.0 };
+    let to_world = |t: &Vec4| {
+        let along = unit(linear * t.truncate().as_dvec3()).unwrap_or_default().as_vec3();
+        along.extend(t.w * handedness)
+    };
+    mesh.tangents = raw.tangents.iter().map(to_world).collect();
     if mesh.uvs.is_empty() && how.needs_uv {
         give_barycentric_uvs(&mut mesh);
     }
@@ -115,6 +123,9 @@ fn give_barycentric_uvs(mesh: &mut DraftMesh) {
     let positions = corners().map(|i| mesh.positions[i]).collect();
     if !mesh.normals.is_empty() {
         mesh.normals = corners().map(|i| mesh.normals[i]).collect();
+    }
+    if !mesh.tangents.is_empty() {
+        mesh.tangents = corners().map(|i| mesh.tangents[i]).collect();
     }
     mesh.positions = positions;
     let uvs = [Vec2::new(0.0, 1.0), Vec2::new(1.0, 1.0), Vec2::new(0.0, 0.0)];

@@ -225,6 +225,7 @@ fn with_used_vertices(raw: &RawMesh, mut triangles: Vec<[u32; 3]>) -> RawMesh {
             part.positions.push(raw.positions[old]);
             part.uvs.extend(raw.uvs.get(old));
             part.normals.extend(raw.normals.get(old));
+            part.tangents.extend(raw.tangents.get(old));
         }
         *i = renumbered[old];
     }

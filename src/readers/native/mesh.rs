@@ -202,6 +202,6 @@ fn raw_part(part: &Part) -> RawMesh {
         normals: part.normals.clone(),
         uvs: part.uvs.clone(),
         triangles: part.triangles.clone(),
-        groups: Vec::new(),
+        ..RawMesh::default()
     }
 }

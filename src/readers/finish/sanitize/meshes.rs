@@ -61,6 +61,9 @@ pub(super) fn use_all_vertices(mesh: &mut DraftMesh) {
     if mesh.uvs.len() != count {
         mesh.uvs.clear();
     }
+    if mesh.tangents.len() != count {
+        mesh.tangents.clear();
+    }
     let mut renumbered = vec![u32::MAX; count];
     mesh.triangles.iter().flatten().for_each(|&i| renumbered[i as usize] = 0);
     if !renumbered.contains(&u32::MAX) {
@@ -73,6 +76,7 @@ pub(super) fn use_all_vertices(mesh: &mut DraftMesh) {
     keep(&mut mesh.positions, used);
     keep(&mut mesh.normals, used);
     keep(&mut mesh.uvs, used);
+    keep(&mut mesh.tangents, used);
     mesh.triangles.iter_mut().flatten().for_each(|i| *i = renumbered[*i as usize]);
 }
 

@@ -4,8 +4,11 @@ use super::load_bytes;
 use super::model::Model;
 use serde_json::json;
 
-/// Returns the model of a square, and its chunks: kinds and contents.
-fn square() -> (Model, Vec<([u8; 4], Vec<u8>)>) {
+/// Kind and content of a chunk.
+type Chunk = ([u8; 4], Vec<u8>);
+
+/// Returns the model of a square, and its chunks.
+fn square() -> (Model, Vec<Chunk>) {
     let mut model = Model::new();
     let mesh = model.square(None);
     model.node(json!({ "mesh": mesh }));
@@ -20,7 +23,7 @@ fn square() -> (Model, Vec<([u8; 4], Vec<u8>)>) {
     (model, chunks)
 }
 
-fn glb(chunks: &[([u8; 4], Vec<u8>)]) -> Vec<u8> {
+fn glb(chunks: &[Chunk]) -> Vec<u8> {
     let mut body = Vec::new();
     for (kind, content) in chunks {
         body.extend((content.len() as u32).to_le_bytes());
@@ -33,7 +36,7 @@ fn glb(chunks: &[([u8; 4], Vec<u8>)]) -> Vec<u8> {
 #[test]
 fn padding_by_zeros_or_spaces_and_further_chunks_load() {
     let (_, chunks) = square();
-    let same = |chunks: &[([u8; 4], Vec<u8>)]| {
+    let same = |chunks: &[Chunk]| {
         let loaded = load_bytes("m.glb", &glb(chunks)).unwrap();
         assert_eq!((loaded.scene.meshes.len(), loaded.scene.meshes[0].triangles.len()), (1, 2));
     };
@@ -47,7 +50,7 @@ fn padding_by_zeros_or_spaces_and_further_chunks_load() {
     let other = (*b"XTRA", vec![1, 2, 3, 4]);
     same(&[chunks[0].clone(), chunks[1].clone(), other.clone()]);
     same(&[chunks[0].clone(), other.clone(), chunks[1].clone()]);
-    let message = |chunks: &[([u8; 4], Vec<u8>)]| load_bytes("m.glb", &glb(chunks)).unwrap_err().to_string();
+    let message = |chunks: &[Chunk]| load_bytes("m.glb", &glb(chunks)).unwrap_err().to_string();
     assert!(message(&[other, chunks[0].clone()]).contains("the first chunk is not JSON"));
     let mut cut = glb(&chunks);
     cut.truncate(cut.len() - 8);

@@ -3,6 +3,7 @@ mod model;
 mod samples;
 mod skin;
 mod slow_damage;
+mod tangents;
 
 use super::super::{LoadOptions, Loaded, SceneError, Severity, load};
 use base::math::luminance;
