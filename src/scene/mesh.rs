@@ -32,7 +32,7 @@ pub struct Mesh {
     pub emission: Option<Emission>,
 }
 
-/// Diffuse emission of a surface.
+/// Diffuse emission of a surface, to be multiplied by the opacity of its material at each point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Emission {
     /// Radiance from every point of the front, in every direction, W/(sr m²).

@@ -1,6 +1,6 @@
 //! A scene prepared for rendering.
 
-use crate::light::{Emitters, emitted};
+use crate::light::Emitters;
 use crate::material::{Bsdf, Materials};
 use crate::meshes::{self, triangle_meshes};
 use crate::relief::Reliefs;
@@ -116,16 +116,13 @@ impl World {
         self.materials.at_coordinates(mesh.material, uv, covered)
     }
 
-    /// Returns the radiance that a surface emits towards the unit vector `out`.
+    /// Returns the radiance that a surface emits towards the unit vector `out`: as much as the surface is opaque there.
     #[inline]
     pub fn emitted(&self, s: &Surface, out: Vec3) -> Rgb {
-        let mesh = &self.scene.meshes[s.mesh as usize];
-        let Some(emission) = mesh.emission else { return Rgb::ZERO };
-        let factor = |texture| {
-            let uv = mesh.uv(&mesh.triangles[s.triangle as usize], s.barycentric);
-            self.scene.textures.lookup(texture, uv)
-        };
-        emitted(&emission, s.normal, out, factor)
+        match self.emitters.area(s.mesh) {
+            Some(light) => light.emitted(s.triangle, s.barycentric, s.normal, out),
+            None => Rgb::ZERO,
+        }
     }
 
     /// Returns the albedo that guides denoisers, towards the unit vector `out`, from 0 to 1: the larger of the share of

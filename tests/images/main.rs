@@ -26,6 +26,7 @@ mod lightcuts;
 mod many_lights;
 mod mitsuba;
 mod occluder_cache;
+mod opacity;
 mod path;
 mod photon_cache;
 mod principled;

@@ -275,7 +275,7 @@ impl Importer<'_> {
         let opacity = match (&source.alpha_mode, texture) {
             (Checked::Valid(AlphaMode::Mask), _) => {
                 let cutoff = source.alpha_cutoff.as_ref().map_or(0.5, |cutoff| cutoff.0);
-                // A texel is opaque if its alpha times the factor reaches the cutoff.
+                // A point is opaque if its alpha times the factor reaches the cutoff.
                 match texture {
                     Some(info) if factor >= cutoff => {
                         self.share(1.0, Some(info), Channel::AlphaFrom(cutoff / factor), name)?

@@ -43,7 +43,9 @@ pub struct IndirectLight<'w> {
 
 impl IndirectLight<'_> {
     /// Returns the radiance that a surface, hit along `direction` at `distance`, reflects back. Also returns the albedo
-    /// of the reflection that is still missing because the surface is too near for the map; 0 if none is.
+    /// of the reflection that is still missing because the surface is too near for the map; 0 if none is. Calls
+    /// `behind` with every surface that the ray meets behind sheets, or with nothing, and with the share of the light
+    /// from there.
     #[inline]
     pub(super) fn sent(
         &self,
@@ -52,6 +54,7 @@ impl IndirectLight<'_> {
         distance: f32,
         sampler: &mut Sampler,
         counts: &mut GatherCounts,
+        mut behind: impl FnMut(Option<&Surface>, Rgb),
     ) -> (Rgb, Rgb) {
         let (mut radiance, mut throughput, mut near) = (Rgb::ZERO, Rgb::ONE, Rgb::ZERO);
         let mut surface = *first;
@@ -75,7 +78,9 @@ impl IndirectLight<'_> {
             direction = surface.frame.to_world(s.wi);
             counts.followed += 1;
             let ray = shadow::ray_from(surface.position, surface.normal, direction);
-            let Some(next) = self.world.intersect(&ray) else { break };
+            let next = self.world.intersect(&ray);
+            behind(next.as_ref(), throughput);
+            let Some(next) = next else { break };
             surface = next;
         }
         (radiance, near)

@@ -2,7 +2,6 @@
 
 use super::base::CoatInterface;
 use super::build::{Builder, Colouring, MaterialEntry};
-use super::colours::opaque;
 use super::model::{Bsdf, Model};
 use super::straight::LastStraight;
 use base::math::{Rgb, luminance};
@@ -154,7 +153,7 @@ impl Materials {
         match &entry.opacity {
             Some(opacity) => {
                 let uv = uv();
-                Rgb::splat(1.0 - opaque(opacity, |id| self.textures.textures().lookup(id, uv)))
+                Rgb::splat(1.0 - opacity.share(|id| self.textures.textures().lookup(id, uv)))
             }
             None => self.at_coordinates(id, uv, || 0.0).straight_transmittance(cos()),
         }
