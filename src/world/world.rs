@@ -113,7 +113,8 @@ impl World {
         let mesh = &self.scene.meshes[s.mesh as usize];
         let uv = || mesh.uv(&self.triangles.get(s.mesh, s.triangle).vertices, s.barycentric);
         let covered = || self.covered(s.mesh, s.triangle, s.footprint);
-        self.materials.at_coordinates(mesh.material, uv, covered)
+        let attribute = |id| mesh.attribute(id, s.triangle as usize, s.barycentric);
+        self.materials.at_coordinates(mesh.material, uv, covered, attribute)
     }
 
     /// Returns the radiance that a surface emits towards the unit vector `out`.
@@ -123,7 +124,8 @@ impl World {
         let Some(emission) = mesh.emission else { return Rgb::ZERO };
         let factor = |texture| {
             let uv = mesh.uv(&mesh.triangles[s.triangle as usize], s.barycentric);
-            self.scene.textures.lookup(texture, uv)
+            let attribute = |id| mesh.attribute(id, s.triangle as usize, s.barycentric);
+            self.scene.textures.lookup(texture, uv, attribute)
         };
         emitted(&emission, s.normal, out, factor)
     }

@@ -7,7 +7,10 @@ use crate::kit::*;
 use crate::oracle::{assert_means_within, mean};
 use glam::{DVec3, Vec3};
 use lightsplat::math::Rgb;
-use lightsplat::scene::{DeltaLight, DistantDisc, Environment, Scene};
+use lightsplat::scene::{
+    Attribute, AttributeId, AttributeValues, DeltaLight, DistantDisc, Emission, Environment, Material, Mesh,
+    Reflectance, Scene, Share,
+};
 use std::f32::consts::PI;
 
 /// Albedo of all diffuse surfaces.
@@ -20,7 +23,7 @@ const TOLERANCE: f64 = 0.03;
 type NamedScene = (&'static str, fn() -> WorldAndView);
 
 /// Scenes of mean 1, each with the reason.
-const SCENES: [NamedScene; 10] = [
+const SCENES: [NamedScene; 13] = [
     ("nothing before a sky of radiance 1", || {
         let mut scene = scene(camera(Vec3::ZERO, Vec3::X, 0.5), [8, 8]);
         scene.environment = Some(Environment::Constant(Rgb::ONE));
@@ -86,7 +89,56 @@ const SCENES: [NamedScene; 10] = [
             scene.meshes.push(emitting(lamp, Rgb::splat(IRRADIANCE / (PI * 4.0 * corner_factor))));
         })
     }),
+    ("a floor of vertex colours under a sky of radiance 1 / their value at the point seen", || {
+        let colour = |x: f32, z: f32| Rgb::new(0.5 + 0.4 * x, 0.5 - 0.4 * x, 0.5 + 0.4 * z);
+        let at = Vec3::new(0.6, 0.0, -0.5);
+        let mut scene = scene(camera(at + Vec3::Y, at, 0.05), [8, 8]);
+        let texture = add_attribute_texture(&mut scene, AttributeId(0), None);
+        let diffuse = Reflectance::Textured { texture, scale: Rgb::ONE };
+        let material = add_material(&mut scene, Material { diffuse, ..Material::default() });
+        let floor = quad(Vec3::new(-1.0, 0.0, -1.0), Vec3::Z * 2.0, Vec3::X * 2.0, material);
+        let colours = floor.positions.iter().map(|p| colour(p.x, p.z)).collect();
+        scene.meshes.push(with_attribute(floor, AttributeValues::Vertices(colours)));
+        scene.environment = Some(Environment::Constant(colour(at.x, at.z).recip()));
+        world(scene)
+    }),
+    // Both triangles of the lamp have the same form factor.
+    ("a floor under a parallel square whose triangles emit unequally", || {
+        let (h, d) = (0.5f32, 2.0f32);
+        let a = h / d;
+        let corner_factor = a / (1.0 + a * a).sqrt() * (a / (1.0 + a * a).sqrt()).atan() / PI;
+        floor(|scene| {
+            let texture = Some(add_attribute_texture(scene, AttributeId(0), None));
+            let black = add_material(scene, diffuse(Rgb::ZERO));
+            let lamp = quad(Vec3::new(-h, d, -h), Vec3::X * 2.0 * h, Vec3::Z * 2.0 * h, black);
+            let radiance = Rgb::splat(IRRADIANCE / (PI * 4.0 * corner_factor));
+            let shares = vec![Rgb::new(0.2, 1.0, 2.0), Rgb::new(1.8, 1.0, 0.0)];
+            let mut lamp = with_attribute(lamp, AttributeValues::Triangles(shares));
+            lamp.emission = Some(Emission { radiance, texture, two_sided: false });
+            scene.meshes.push(lamp);
+        })
+    }),
+    ("a floor in the shadow of a screen whose vertices are opaque in part", || {
+        let direction = -Vec3::new(0.0, 2.0, 1.5).normalize();
+        floor(|scene| {
+            let texture = add_attribute_texture(scene, AttributeId(0), None);
+            let opacity = Some(Share::Textured { texture, scale: 0.5 });
+            let screen = add_material(scene, Material { opacity, ..diffuse(Rgb::ZERO) });
+            let screen = quad(Vec3::new(-0.2, 1.0, 0.55), Vec3::X * 0.4, Vec3::Z * 0.4, screen);
+            // The ray to the point passes the middle of the diagonal between the first and the third corner.
+            let opacities = [0.6, 0.0, 1.0, 0.0].map(Rgb::splat).to_vec();
+            scene.meshes.push(with_attribute(screen, AttributeValues::Vertices(opacities)));
+            let irradiance = Rgb::splat(IRRADIANCE / 0.8 / (1.0 - 0.5 * 0.8));
+            scene.lights.push(DeltaLight::Directional { direction, irradiance });
+        })
+    }),
 ];
+
+/// Gives a mesh an attribute.
+fn with_attribute(mut mesh: Mesh, values: AttributeValues) -> Mesh {
+    mesh.attributes.push(Attribute { id: AttributeId(0), values });
+    mesh
+}
 
 /// Irradiance of a floor whose radiance is 1.
 const IRRADIANCE: f32 = PI / ALBEDO;

@@ -4,6 +4,7 @@ use super::camera::FRAMES_PER_SECOND;
 use super::document::GltfFile;
 use super::light;
 use super::mesh;
+use super::mesh::VertexColours;
 use super::nodes::Placed;
 use super::report::Findings;
 use crate::error::SceneError;
@@ -64,8 +65,8 @@ pub(super) struct Importer<'a> {
     pub options: &'a ImportOptions,
     pub contents: &'a mut Contents,
     pub report: Findings,
-    /// Materials read so far, by index.
-    pub surfaces: BTreeMap<Option<usize>, MaterialUse>,
+    /// Materials read so far, by index and by the colours of vertices that they are multiplied with.
+    pub surfaces: BTreeMap<(Option<usize>, VertexColours), MaterialUse>,
     pub images: BTreeMap<usize, ImageSource>,
     /// Primitives read so far, by index of the mesh.
     pub meshes: BTreeMap<usize, Vec<(Arc<RawMesh>, Appearance)>>,
@@ -137,7 +138,7 @@ impl Importer<'_> {
         for (i, primitive) in mesh.primitives.iter().enumerate() {
             let name = mesh.name.as_deref().unwrap_or("mesh");
             let what = format!("{name} {}, primitive {i}", index.value());
-            let surface = self.surface(primitive.material)?;
+            let surface = self.surface(primitive.material, VertexColours::of(document, primitive)?)?;
             let raw = mesh::read(document, primitive, surface.uv_set, &what, &mut self.report)?;
             primitives.extend(raw.map(|raw| (Arc::new(raw), surface.appearance)));
         }

@@ -4,7 +4,9 @@ use super::distribution::DiscreteDistribution;
 use base::math::{F32x16, Rgb, U32x16, luminance};
 use base::sampling::uniform_triangle;
 use glam::{Vec2, Vec3};
-use scene::{Emission, Scene, Texture, TextureId, Textures};
+use scene::{
+    AttributeTexture, AttributeValues, Emission, Mesh, Scene, Texture, TextureId, Textures, interpolated,
+};
 
 /// A mesh that emits.
 #[derive(Clone, Debug)]
@@ -33,6 +35,8 @@ struct EmissionTexture {
     id: TextureId,
     /// Texture coordinates of each triangle's corners; empty if the mesh has none.
     uvs: Vec<[Vec2; 3]>,
+    /// Values of an attribute at each triangle's corners; empty if the texture is no attribute of the mesh.
+    attribute: Vec<[Rgb; 3]>,
 }
 
 impl EmissionTexture {
@@ -43,7 +47,13 @@ impl EmissionTexture {
             [] => Vec::new(),
             uvs => mesh.triangles.iter().map(|vertices| vertices.map(|i| uvs[i as usize])).collect(),
         };
-        EmissionTexture { textures: scene.textures.clone(), id, uvs }
+        let named = scene.textures.attribute(id).map(|texture| texture.attribute);
+        let values = mesh.attributes.iter().find(|attribute| Some(attribute.id) == named);
+        let corners = |values: &AttributeValues| {
+            (0..).zip(&mesh.triangles).map(|(t, v)| values.corners(t, v)).collect()
+        };
+        let attribute = values.map_or(Vec::new(), |attribute| corners(&attribute.values));
+        EmissionTexture { textures: scene.textures.clone(), id, uvs, attribute }
     }
 
     /// Returns the factor on the emission at barycentric weights `b` of a triangle.
@@ -52,7 +62,8 @@ impl EmissionTexture {
             Some([u0, u1, u2]) => *u0 * (1.0 - b.x - b.y) + *u1 * b.x + *u2 * b.y,
             None => b,
         };
-        self.textures.lookup(self.id, uv)
+        let attribute = |_| self.attribute.get(triangle as usize).map_or(Rgb::ONE, |at| interpolated(*at, b));
+        self.textures.lookup(self.id, uv, attribute)
     }
 }
 
@@ -92,11 +103,8 @@ impl AreaLight {
             (0..mesh.triangles.len()).map(|t| normal_and_area(mesh.corners(t))).collect();
         let triangles = DiscreteDistribution::new(shapes.iter().map(|s| s.1));
         let area = triangles.total() as f32;
-        let (mean_texture, greatest) = emission.texture.map_or((Rgb::ONE, Rgb::ONE), |t| {
-            let Some(Texture { texels, .. }) = scene.textures.by_id(t) else { return (Rgb::ONE, Rgb::ONE) };
-            let mean = texels.iter().sum::<Rgb>() / texels.len().max(1) as f32;
-            (mean, texels.iter().fold(Rgb::ZERO, Rgb::max))
-        });
+        let (mean_texture, greatest) =
+            emission.texture.map_or((Rgb::ONE, Rgb::ONE), |texture| mean_and_greatest(scene, mesh, texture));
         let sides = if emission.two_sided { 2.0 } else { 1.0 };
         let power = luminance(emission.radiance * mean_texture) * area * std::f32::consts::PI * sides;
         if !(power > 0.0 && power.is_finite()) {
@@ -169,6 +177,27 @@ impl AreaLight {
         let factor = |_| self.texture(point.triangle, point.barycentric);
         emitted(&self.emission, point.normal, out, factor)
     }
+}
+
+/// Returns the mean of a texture on a mesh, and the maximum of each channel. Those of a product are products.
+fn mean_and_greatest(scene: &Scene, mesh: &Mesh, texture: TextureId) -> (Rgb, Rgb) {
+    let Some(AttributeTexture { attribute, image }) = scene.textures.attribute(texture) else {
+        return of_texels(scene, texture);
+    };
+    let (mean, greatest) = image.map_or((Rgb::ONE, Rgb::ONE), |image| of_texels(scene, image));
+    let Some(found) = mesh.attributes.iter().find(|found| found.id == *attribute) else {
+        return (mean, greatest);
+    };
+    let (sum, area) = mesh.integrate_attribute(*attribute);
+    let of_attribute = found.values.all().iter().copied().fold(Rgb::ZERO, Rgb::max);
+    (mean * (sum / area).as_vec3(), greatest * of_attribute)
+}
+
+/// Returns the mean of an image's texels, and the maximum of each channel.
+fn of_texels(scene: &Scene, image: TextureId) -> (Rgb, Rgb) {
+    let Some(Texture { texels, .. }) = scene.textures.by_id(image) else { return (Rgb::ONE, Rgb::ONE) };
+    let mean = texels.iter().sum::<Rgb>() / texels.len().max(1) as f32;
+    (mean, texels.iter().fold(Rgb::ZERO, Rgb::max))
 }
 
 /// Returns the radiance that a point of an emitter with the geometric normal `normal` emits towards `out`. `factor`

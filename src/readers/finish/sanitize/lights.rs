@@ -57,7 +57,11 @@ fn check_emitters(draft: &mut Draft, report: &mut SanitizeReport) -> Result<(), 
         let Some(emission) = mesh.emission else { continue };
         check_light(emission.radiance, &format!("mesh \"{}\": the radiance", mesh.name), &place)?;
         let texture = emission.texture.and_then(|id| draft.scene.textures.get(id.0 as usize));
-        let dark = texture.is_some_and(|t| t.texels.all(|texel| texel.max_element() <= 0.0));
+        let of_attribute = emission.texture.and_then(|id| draft.scene.textures.attribute(id));
+        let name = of_attribute.and_then(|of| draft.attribute_names.get(of.attribute.0 as usize));
+        let values = mesh.attributes.iter().find(|attribute| Some(&attribute.name) == name);
+        let dark = texture.is_some_and(|t| t.texels.all(|texel| texel.max_element() <= 0.0))
+            || values.is_some_and(|found| found.values.all().iter().all(|value| *value == Rgb::ZERO));
         if emission.radiance == Rgb::ZERO || dark {
             report.black_lights += 1;
             mesh.emission = None;

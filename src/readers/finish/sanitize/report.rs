@@ -22,9 +22,9 @@ pub struct SanitizeReport {
     pub turned: usize,
     /// NaN or infinite texture coordinates, set to 0.
     pub bad_uvs: usize,
-    /// Reflectances clamped to 1, and texels clamped to values that cannot create energy.
+    /// Reflectances clamped to 1, and texels and attributes clamped to values that cannot create energy.
     pub clamped: usize,
-    /// NaN, infinite or negative texels, set to 0.
+    /// NaN, infinite or negative texels and attributes, set to 0.
     pub bad_texels: usize,
     /// Emitters, lights and environments without light, dropped.
     pub black_lights: usize,

@@ -1,3 +1,4 @@
+mod colours;
 mod model;
 mod samples;
 mod slow_damage;
