@@ -3,8 +3,9 @@
 //! [`crate::finish`] turns a [`Draft`] into a [`Scene`].
 
 use crate::Location;
+use crate::attributes::NamedAttribute;
 use glam::{DVec3, Vec2, Vec3, Vec4};
-use scene::{DeltaLight, Emission, MaterialId, PixelFilter, Projection, Scene};
+use scene::{AttributeValues, DeltaLight, Emission, MaterialId, PixelFilter, Projection, Scene};
 
 /// Width and height in pixels of films without a size.
 pub(crate) const DEFAULT_RESOLUTION: [u32; 2] = [960, 540];
@@ -68,6 +69,32 @@ pub(crate) struct DraftMesh {
     pub emission: Option<Emission>,
     /// Number of triangles whose winding was reversed to agree with their vertex normals.
     pub turned: usize,
+    pub attributes: Vec<NamedAttribute>,
+}
+
+impl DraftMesh {
+    /// Drops triangles, with the attributes of their faces. `is_kept` gets all positions and the corners' numbers.
+    pub fn retain_triangles(&mut self, mut is_kept: impl FnMut(&[DVec3], &[u32; 3]) -> bool) {
+        let (positions, triangles) = (&self.positions, &mut self.triangles);
+        let is_of_faces =
+            |attribute: &NamedAttribute| matches!(attribute.values, AttributeValues::Triangles(_));
+        if !self.attributes.iter().any(is_of_faces) {
+            return triangles.retain(|triangle| is_kept(positions, triangle));
+        }
+        let kept: Vec<bool> = triangles.iter().map(|triangle| is_kept(positions, triangle)).collect();
+        keep(triangles, &kept);
+        for attribute in &mut self.attributes {
+            if let AttributeValues::Triangles(values) = &mut attribute.values {
+                keep(values, &kept);
+            }
+        }
+    }
+}
+
+/// Keeps the values whose entry of `kept` is true.
+fn keep<T>(values: &mut Vec<T>, kept: &[bool]) {
+    let mut kept = kept.iter();
+    values.retain(|_| kept.next().copied().unwrap_or(false));
 }
 
 /// A scene whose positions are still in world coordinates.
@@ -81,6 +108,8 @@ pub struct Draft {
     pub lights: Vec<(DeltaLight, DVec3)>,
     /// Location of each material's description.
     pub material_places: Vec<Location>,
+    /// Names of the attributes that textures look up, by number.
+    pub attribute_names: Vec<String>,
 }
 
 impl Draft {

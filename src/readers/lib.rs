@@ -8,6 +8,9 @@
 
 #![forbid(unsafe_code)]
 
+#[cfg(test)]
+mod attribute_tests;
+mod attributes;
 mod budget;
 mod check;
 mod constants;
@@ -33,7 +36,7 @@ mod sky;
 mod statements;
 
 use error::Log;
-use finish::{divide, recentre, sanitize};
+use finish::{divide, recentre, sanitize, wanted};
 use scene::{Cameras, Scene};
 use std::path::Path;
 
@@ -80,6 +83,7 @@ pub fn load(path: &Path, options: &LoadOptions) -> Result<Loaded, SceneError> {
     };
     let (mut draft, hash) = plan.realise(&mut log)?;
     let hash = options.hash(hash);
+    wanted::choose(&mut draft, &mut log)?;
     let (repairs, coordinates) = sanitize::sanitize(&mut draft, &mut log)?;
     divide::divide(&mut draft, &coordinates);
     let (scene, cameras) = recentre::recentre(draft, &coordinates);

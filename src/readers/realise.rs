@@ -16,7 +16,7 @@ use base::math::Rgb;
 use glam::{DMat3, DMat4};
 use rayon::prelude::*;
 use scene::requirements::ENVIRONMENT_TEXEL_BYTES;
-use scene::{Environment, EnvironmentMap, Scene, Texture};
+use scene::{Environment, EnvironmentMap, Scene, Texture, Textures};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
@@ -56,7 +56,8 @@ impl ScenePlan {
         let contents = self.contents;
         contents.place_meshes(&mut meshes, log)?;
         contents.decode_embedded(&mut images)?;
-        let textures = contents.textures.into_iter().zip(images).filter_map(|(t, p)| texture(t, p)).collect();
+        let textures: Textures =
+            contents.textures.into_iter().zip(images).filter_map(|(t, p)| texture(t, p)).collect();
         let environment = match contents.environment {
             Some(plan) => plan.realise(environment)?,
             None => None,
@@ -67,7 +68,7 @@ impl ScenePlan {
             max_depth: self.max_depth,
             hides_emitters: self.hides_emitters,
             materials: contents.materials,
-            textures,
+            textures: textures.with_attributes(contents.attribute_textures),
             environment,
             discs: contents.discs,
             ..Scene::default()
@@ -78,6 +79,7 @@ impl ScenePlan {
             meshes: meshes.into_iter().flatten().collect(),
             lights: contents.lights,
             material_places: contents.material_places,
+            attribute_names: contents.attribute_names,
         };
         let bytes: Vec<u8> = hashes.iter().flat_map(|h| h.to_le_bytes()).collect();
         Ok((draft, fnv1a(&bytes)))

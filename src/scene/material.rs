@@ -7,6 +7,7 @@
 use super::parameter::{Reflectance, Roughness, Share};
 use super::principled::Principled;
 use super::relief::Relief;
+use super::texture::TextureId;
 use base::math::Rgb;
 
 /// Index into [`super::Scene::materials`].
@@ -81,6 +82,28 @@ impl Material {
             all.push(&mut blend.weight);
             all.extend(blend.other.shares_mut());
         }
+        all
+    }
+
+    /// Returns every roughness of the lobes.
+    pub fn alphas_mut(&mut self) -> Vec<&mut Roughness> {
+        let mut all = Vec::new();
+        for lobe in &mut self.lobes {
+            if let Lobe::Rough { alpha, .. } | Lobe::RoughDielectric { alpha, .. } = lobe {
+                all.push(alpha);
+            }
+        }
+        all.extend(self.blend.iter_mut().flat_map(|blend| blend.other.alphas_mut()));
+        all
+    }
+
+    /// Lists the textures of colours, shares and roughness.
+    pub fn textures(&self) -> Vec<TextureId> {
+        let mut material = self.clone();
+        let mut all: Vec<TextureId> =
+            material.reflectances_mut().into_iter().filter_map(|colour| colour.texture()).collect();
+        all.extend(material.shares_mut().into_iter().filter_map(|share| share.texture()));
+        all.extend(material.alphas_mut().into_iter().filter_map(|alpha| alpha.texture()));
         all
     }
 

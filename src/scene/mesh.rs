@@ -1,9 +1,10 @@
 //! Indexed triangle meshes.
 
+use super::attribute::{Attribute, AttributeId};
 use super::material::MaterialId;
 use super::texture::TextureId;
 use base::math::Rgb;
-use glam::{Vec2, Vec3, Vec4};
+use glam::{DVec3, Vec2, Vec3, Vec4};
 
 /// An indexed triangle mesh with one material.
 #[derive(Clone, Debug)]
@@ -30,6 +31,8 @@ pub struct Mesh {
     pub material: MaterialId,
     /// Emission, if the surface emits.
     pub emission: Option<Emission>,
+    /// Attributes that material or emission look up.
+    pub attributes: Vec<Attribute>,
 }
 
 /// Diffuse emission of a surface, to be multiplied by the opacity of its material at each point.
@@ -84,5 +87,28 @@ impl Mesh {
         }
         let [u0, u1, u2] = vertices.map(|i| self.uvs[i as usize]);
         u0 * (1.0 - b.x - b.y) + u1 * b.x + u2 * b.y
+    }
+
+    /// Returns the value of an attribute at barycentric weights `b` of the last two corners of triangle `t`; white if
+    /// the mesh lacks the attribute.
+    #[inline]
+    pub fn attribute(&self, id: AttributeId, t: usize, b: Vec2) -> Rgb {
+        let found = self.attributes.iter().find(|attribute| attribute.id == id);
+        found.map_or(Rgb::ONE, |found| found.values.at(t, &self.triangles[t], b))
+    }
+
+    /// Returns the integral of an attribute over the surface, and the surface's area; zeros if the mesh lacks it.
+    pub fn integrate_attribute(&self, id: AttributeId) -> (DVec3, f64) {
+        let Some(found) = self.attributes.iter().find(|attribute| attribute.id == id) else {
+            return (DVec3::ZERO, 0.0);
+        };
+        let of_triangle = |(sum, whole): (DVec3, f64), t: usize| {
+            let [a, b, c] = self.corners(t).map(|corner| corner.as_dvec3());
+            let area = 0.5 * (b - a).cross(c - a).length();
+            let corners = found.values.corners(t, &self.triangles[t]);
+            let mean = corners.into_iter().map(|value| value.as_dvec3()).sum::<DVec3>() / 3.0;
+            (sum + area * mean, whole + area)
+        };
+        (0..self.triangles.len()).fold((DVec3::ZERO, 0.0), of_triangle)
     }
 }

@@ -37,6 +37,14 @@ impl<T: Copy + Mul<Output = T>> Parameter<T> {
         }
     }
 
+    /// Returns the texture; `None` for a constant.
+    pub fn texture(&self) -> Option<TextureId> {
+        match *self {
+            Parameter::Constant(_) => None,
+            Parameter::Textured { texture, .. } => Some(texture),
+        }
+    }
+
     /// True if the parameter is textured.
     pub fn is_textured(&self) -> bool {
         matches!(self, Parameter::Textured { .. })

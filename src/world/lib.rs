@@ -7,6 +7,8 @@
 
 #![forbid(unsafe_code)]
 
+#[cfg(test)]
+mod attribute_tests;
 mod hidden;
 pub mod light;
 pub mod material;

@@ -128,8 +128,9 @@ impl World {
             false => self.triangles.get(hit.geometry, hit.primitive).shading_normal(mesh, barycentric),
         };
         let uv = || mesh.uv(&self.triangles.get(hit.geometry, hit.primitive).vertices, barycentric);
+        let attribute = |id| mesh.attribute(id, hit.primitive as usize, barycentric);
         let cos = || normal().dot(out);
-        self.materials.straight_transmittance(mesh.material, cos, uv, last)
+        self.materials.straight_transmittance(mesh.material, cos, uv, attribute, last)
     }
 
     /// Returns the parameter at which a segment continues behind the sheet at a hit.

@@ -113,7 +113,8 @@ impl World {
         let mesh = &self.scene.meshes[s.mesh as usize];
         let uv = || mesh.uv(&self.triangles.get(s.mesh, s.triangle).vertices, s.barycentric);
         let covered = || self.covered(s.mesh, s.triangle, s.footprint);
-        self.materials.at_coordinates(mesh.material, uv, covered)
+        let attribute = |id| mesh.attribute(id, s.triangle as usize, s.barycentric);
+        self.materials.at_coordinates(mesh.material, uv, covered, attribute)
     }
 
     /// Returns the radiance that a surface emits towards the unit vector `out`: as much as the surface is opaque there.

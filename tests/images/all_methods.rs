@@ -8,7 +8,8 @@ use crate::oracle::{assert_means_within, mean};
 use glam::{DVec3, Vec2, Vec3};
 use lightsplat::math::Rgb;
 use lightsplat::scene::{
-    DeltaLight, DistantDisc, Emission, Environment, Filter, Material, MaterialId, Scene, Share, Texture, Wrap,
+    Attribute, AttributeId, AttributeValues, DeltaLight, DistantDisc, Emission, Environment, Filter, Material,
+    MaterialId, Mesh, Reflectance, Scene, Share, Texture, Wrap,
 };
 use std::f32::consts::PI;
 
@@ -22,7 +23,7 @@ const TOLERANCE: f64 = 0.03;
 type NamedScene = (&'static str, fn() -> WorldAndView);
 
 /// Scenes of mean 1, each with the reason.
-const SCENES: [NamedScene; 14] = [
+const SCENES: [NamedScene; 17] = [
     ("nothing before a sky of radiance 1", || {
         let mut scene = scene(camera(Vec3::ZERO, Vec3::X, 0.5), [8, 8]);
         scene.environment = Some(Environment::Constant(Rgb::ONE));
@@ -101,7 +102,30 @@ const SCENES: [NamedScene; 14] = [
         furnace(|scene| leaves(scene, Filter::Bilinear))
     }),
     ("leaves cut out of it: not seen either", || furnace(|scene| leaves(scene, Filter::Cut(0.4)))),
-];
+    ("a floor of vertex colours under a sky of radiance 1 / their value at the point seen", || {
+        let colour = |x: f32, z: f32| Rgb::new(0.5 + 0.4 * x, 0.5 - 0.4 * x, 0.5 + 0.4 * z);
+        let at = Vec3::new(0.6, 0.0, -0.5);
+        let mut scene = scene(camera(at + Vec3::Y, at, 0.05), [8, 8]);
+        let texture = add_attribute_texture(&mut scene, AttributeId(0), None);
+        let diffuse = Reflectance::Textured { texture, scale: Rgb::ONE };
+        let material = add_material(&mut scene, Material { diffuse, ..Material::default() });
+        let floor = quad(Vec3::new(-1.0, 0.0, -1.0), Vec3::Z * 2.0, Vec3::X * 2.0, material);
+        let colours = floor.positions.iter().map(|p| colour(p.x, p.z)).collect();
+        scene.meshes.push(with_attribute(floor, AttributeValues::Vertices(colours)));
+        scene.environment = Some(Environment::Constant(colour(at.x, at.z).recip()));
+        world(scene)
+    }),
+    // Both triangles of the lamp have the same form factor.
+    ("a floor under a parallel square whose triangles emit unequally", || {
+        let (h, d) = (0.5f32, 2.0f32);
+        let a = h / d;
+        let corner_factor = a / (1.0 + a * a).sqrt() * (a / (1.0 + a * a).sqrt()).atan() / PI;
+        floor(|scene| {
+            let texture = Some(add_attribute_texture(scene, AttributeId(0), None));
+            let black = add_material(scene, diffuse(Rgb::ZERO));
+            let lamp = quad(Vec3::new(-h, d, -h), Vec3::X * 2.0 * h, Vec3::Z * 2.0 * h, black);
+            let radiance = Rgb::splat(IRRADIANCE / (PI * 4.0 * corner_factor));
+            let shares = vec![Rgb::new(0.2, 1.0, 2.0), Rgb::new(1.8, 1.0, 0.0)];
 
 /// Adds the parallel square over the floor. Its material covers the share `opacity` of it on average.
 fn square_lamp(scene: &mut Scene, material: MaterialId, opacity: f32) {
@@ -129,6 +153,32 @@ fn leaves(scene: &mut Scene, filter: Filter) {
         mesh.emission = Some(Emission { radiance: Rgb::splat(1.0 - ALBEDO), texture: None, two_sided: true });
         scene.meshes.push(mesh);
     }
+}
+            let mut lamp = with_attribute(lamp, AttributeValues::Triangles(shares));
+            lamp.emission = Some(Emission { radiance, texture, two_sided: false });
+            scene.meshes.push(lamp);
+        })
+    }),
+    ("a floor in the shadow of a screen whose vertices are opaque in part", || {
+        let direction = -Vec3::new(0.0, 2.0, 1.5).normalize();
+        floor(|scene| {
+            let texture = add_attribute_texture(scene, AttributeId(0), None);
+            let opacity = Some(Share::Textured { texture, scale: 0.5 });
+            let screen = add_material(scene, Material { opacity, ..diffuse(Rgb::ZERO) });
+            let screen = quad(Vec3::new(-0.2, 1.0, 0.55), Vec3::X * 0.4, Vec3::Z * 0.4, screen);
+            // The ray to the point passes the middle of the diagonal between the first and the third corner.
+            let opacities = [0.6, 0.0, 1.0, 0.0].map(Rgb::splat).to_vec();
+            scene.meshes.push(with_attribute(screen, AttributeValues::Vertices(opacities)));
+            let irradiance = Rgb::splat(IRRADIANCE / 0.8 / (1.0 - 0.5 * 0.8));
+            scene.lights.push(DeltaLight::Directional { direction, irradiance });
+        })
+    }),
+];
+
+/// Gives a mesh an attribute.
+fn with_attribute(mut mesh: Mesh, values: AttributeValues) -> Mesh {
+    mesh.attributes.push(Attribute { id: AttributeId(0), values });
+    mesh
 }
 
 /// Irradiance of a floor whose radiance is 1.

@@ -19,9 +19,8 @@ pub fn drop_coincident_emitters(
     let mut seen = HashSet::new();
     let shines = |mesh: &&mut DraftMesh| mesh.emission.is_some_and(|emission| emission.radiance != Rgb::ZERO);
     for mesh in draft.meshes.iter_mut().filter(shines) {
-        let positions = &mesh.positions;
         let before = mesh.triangles.len();
-        mesh.triangles.retain(|t| {
+        mesh.retain_triangles(|positions, t| {
             let corners = t.map(|i| positions.get(i as usize).copied().unwrap_or_default());
             seen.insert(turned_to_least(corners))
         });

@@ -5,3 +5,4 @@ pub mod divide;
 pub mod framing;
 pub mod recentre;
 pub mod sanitize;
+pub mod wanted;

@@ -7,10 +7,13 @@
 //! Very small and very large scenes get another unit of length, a power of two. So no product of lengths leaves the
 //! range of f32.
 
+use crate::attributes::NamedAttribute;
 use crate::draft::{Draft, DraftCamera, DraftMesh};
 use base::math::Rgb;
 use glam::{DVec3, Vec3};
-use scene::{Camera, Cameras, DeltaLight, MAX_RATIO, Material, Mesh, Projection, Relief, Scene};
+use scene::{
+    Attribute, AttributeId, Camera, Cameras, DeltaLight, MAX_RATIO, Material, Mesh, Projection, Relief, Scene,
+};
 
 /// Approximate number of corners that are sampled to compute the vicinity.
 const SAMPLED_CORNERS: usize = 1 << 16;
@@ -129,6 +132,11 @@ fn vicinity(draft: &Draft, camera: DVec3) -> f64 {
 pub(crate) fn recentre(draft: Draft, coordinates: &LocalCoordinates) -> (Scene, Cameras) {
     let scale = coordinates.scale();
     let local = |p: DVec3| coordinates.local(p);
+    let names = draft.attribute_names;
+    let attribute = |NamedAttribute { name, values }: NamedAttribute| {
+        let number = names.iter().position(|other| *other == name)?;
+        Some(Attribute { id: AttributeId(number as u32), values })
+    };
     let mesh = |m: DraftMesh| Mesh {
         name: m.name,
         positions: m.positions.into_iter().map(local).collect(),
@@ -138,6 +146,7 @@ pub(crate) fn recentre(draft: Draft, coordinates: &LocalCoordinates) -> (Scene, 
         triangles: m.triangles,
         material: m.material,
         emission: m.emission,
+        attributes: m.attributes.into_iter().filter_map(attribute).collect(),
     };
     let cameras = Cameras {
         still: coordinates.local_camera(&draft.shot.camera),

@@ -4,6 +4,7 @@ use super::camera::FRAMES_PER_SECOND;
 use super::document::GltfFile;
 use super::light;
 use super::mesh;
+use super::mesh::VertexColours;
 use super::morph;
 use super::nodes::Placed;
 use super::pose::Pose;
@@ -82,8 +83,8 @@ pub(super) struct Importer<'a> {
     pub options: &'a ImportOptions,
     pub contents: &'a mut Contents,
     pub report: Findings,
-    /// Materials read so far, by index.
-    pub surfaces: BTreeMap<Option<usize>, MaterialUse>,
+    /// Materials read so far, by index and by the colours of vertices that they are multiplied with.
+    pub surfaces: BTreeMap<(Option<usize>, VertexColours), MaterialUse>,
     pub images: BTreeMap<usize, ImageSource>,
     /// Primitives read so far, by index of the mesh.
     pub meshes: BTreeMap<usize, Vec<Part>>,
@@ -193,7 +194,7 @@ impl Importer<'_> {
         let mut primitives = Vec::new();
         for (i, primitive) in mesh.primitives.iter().enumerate() {
             let what = primitive_name(mesh, index, i);
-            let surface = self.surface(primitive.material)?;
+            let surface = self.surface(primitive.material, VertexColours::of(document, primitive)?)?;
             let has_tangents = self.has_direction(surface.appearance);
             let raw = mesh::read(document, primitive, surface.uv_set, has_tangents, &what, &mut self.report)?;
             let part = |raw| Part { primitive: i, raw: Arc::new(raw), appearance: surface.appearance };

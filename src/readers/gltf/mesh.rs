@@ -2,9 +2,13 @@
 
 use super::document::GltfFile;
 use super::report::Findings;
+use crate::attributes::{NamedAttribute, VERTEX_ALPHA, VERTEX_COLOUR};
 use crate::error::SceneError;
 use crate::mesh::RawMesh;
+use base::math::Rgb;
 use glam::{DVec3, Vec2, Vec3, Vec4};
+use gltf_json::Index;
+use gltf_json::accessor::{Accessor, Type};
 use gltf_json::mesh::{Mode, Primitive, Semantic};
 use gltf_json::validation::Checked;
 
@@ -29,9 +33,6 @@ pub(super) fn read(
         }
         Checked::Invalid => return Err(document.wrong(format!("{what}: its mode is unknown"))),
     };
-    if attribute(Semantic::Colors(0)).is_some() {
-        report.lacks("colours of vertices are not modelled", "their factor is left out", what);
-    }
     let Some(positions) = attribute(Semantic::Positions) else {
         return Err(document.wrong(format!("{what} has no positions")));
     };
@@ -49,8 +50,17 @@ pub(super) fn read(
         Some(tangents) if with_tangents && !normals.is_empty() => document.vectors::<4>(tangents, what)?,
         _ => Vec::new(),
     };
-    for (name, length) in
-        [("normals", normals.len()), ("texture coordinates", uvs.len()), ("tangents", tangents.len())]
+    let attributes = match attribute(Semantic::Colors(0)) {
+        Some(colours) => attributes(document, colours, what)?,
+        None => Vec::new(),
+    };
+    let colours = attributes.first().map_or(0, |colours| colours.values.all().len());
+    for (name, length) in [
+        ("normals", normals.len()),
+        ("texture coordinates", uvs.len()),
+        ("tangents", tangents.len()),
+        ("colours", colours),
+    ]
     {
         if length != 0 && length != positions.len() {
             return Err(
@@ -68,8 +78,52 @@ pub(super) fn read(
         uvs: uvs.into_iter().map(Vec2::from).collect(),
         tangents: tangents.into_iter().map(Vec4::from).collect(),
         triangles: triangles(&corners, mode),
+        attributes,
         ..RawMesh::default()
     }))
+}
+
+/// Returns the colours of vertices: their colour, and their opacity if there is one.
+fn attributes(
+    document: &GltfFile,
+    accessor: Index<Accessor>,
+    what: &str,
+) -> Result<Vec<NamedAttribute>, SceneError> {
+    let rgb = |colours: Vec<[f32; 3]>| {
+        NamedAttribute::of_vertices(VERTEX_COLOUR, colours.into_iter().map(Rgb::from).collect())
+    };
+    if !has_alpha(document, accessor)? {
+        return Ok(vec![rgb(document.vectors::<3>(accessor, what)?)]);
+    }
+    let colours = document.vectors::<4>(accessor, what)?;
+    let alpha = colours.iter().map(|[.., alpha]| Rgb::splat(*alpha)).collect();
+    let colours = rgb(colours.into_iter().map(|[r, g, b, _]| [r, g, b]).collect());
+    Ok(vec![colours, NamedAttribute::of_vertices(VERTEX_ALPHA, alpha)])
+}
+
+/// Returns true if the elements of an accessor have a fourth component.
+fn has_alpha(document: &GltfFile, accessor: Index<Accessor>) -> Result<bool, SceneError> {
+    Ok(matches!(document.get(accessor, "accessor")?.type_, Checked::Valid(Type::Vec4)))
+}
+
+/// Colours of the vertices of a primitive.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum VertexColours {
+    None,
+    Opaque,
+    WithAlpha,
+}
+
+impl VertexColours {
+    /// Returns which colours a primitive has.
+    pub fn of(document: &GltfFile, primitive: &Primitive) -> Result<VertexColours, SceneError> {
+        let colours = primitive.attributes.get(&Checked::Valid(Semantic::Colors(0)));
+        Ok(match colours {
+            None => VertexColours::None,
+            Some(colours) if has_alpha(document, *colours)? => VertexColours::WithAlpha,
+            Some(_) => VertexColours::Opaque,
+        })
+    }
 }
 
 fn triangles(corners: &[u32], mode: Mode) -> Vec<[u32; 3]> {

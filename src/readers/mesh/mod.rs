@@ -11,6 +11,7 @@
 pub mod mtl;
 pub mod obj;
 pub mod ply;
+mod ply_attributes;
 mod polygon;
 pub mod serialized;
 pub mod shapes;
@@ -18,6 +19,7 @@ mod smooth;
 
 pub(crate) use smooth::vertex_normals as smooth_normals;
 
+use crate::attributes::{NamedAttribute, reorder};
 use crate::draft::DraftMesh;
 use base::math::unit;
 use glam::{DMat3, DMat4, DVec3, Vec2, Vec3, Vec4};
@@ -35,6 +37,7 @@ pub(crate) struct RawMesh {
     pub triangles: Vec<[u32; 3]>,
     /// Material groups: name and first triangle, ascending.
     pub groups: Vec<(String, usize)>,
+    pub attributes: Vec<NamedAttribute>,
 }
 
 /// Shading normals of a mesh.
@@ -66,6 +69,7 @@ pub fn place(raw: RawMesh, how: &Placement) -> DraftMesh {
     let mut mesh = DraftMesh {
         positions: raw.positions.iter().map(|&p| how.to_world.transform_point3(p)).collect(),
         triangles: raw.triangles,
+        attributes: raw.attributes,
         ..DraftMesh::default()
     };
     mesh.uvs = raw.uvs;
@@ -128,6 +132,7 @@ fn give_barycentric_uvs(mesh: &mut DraftMesh) {
         mesh.tangents = corners().map(|i| mesh.tangents[i]).collect();
     }
     mesh.positions = positions;
+    reorder(&mut mesh.attributes, mesh.triangles.as_flattened());
     let uvs = [Vec2::new(0.0, 1.0), Vec2::new(1.0, 1.0), Vec2::new(0.0, 0.0)];
     mesh.uvs = (0..mesh.triangles.len()).flat_map(|_| uvs).collect();
     mesh.triangles = (0..mesh.triangles.len() as u32).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();

@@ -1,5 +1,8 @@
 //! Reader of Wavefront OBJ: positions, texture coordinates, normals, polygons and material groups of selected objects.
 //!
+//! Six numbers after `v` are a position and a colour, coded in sRGB as Blender and MeshLab write it. A seventh is an
+//! opacity, which is not read. A fourth alone is a weight.
+//!
 //! A vertex is a distinct triple of indices (position, uv, normal), numbered by first use. Lines, points, curves and
 //! smoothing groups are ignored.
 //!
@@ -13,10 +16,15 @@
 //! - It splits the mesh at `o`, `g` and `usemtl`, so vertices are no longer shared and smooth normals change.
 
 use super::{RawMesh, polygon};
+use crate::attributes::{NamedAttribute, VERTEX_COLOUR, reorder};
+use crate::decode::srgb_to_linear;
 use crate::error::{Location, SceneError};
 use crate::selection::PartSelection;
+use base::math::Rgb;
 use glam::{DVec3, Vec2, Vec3};
+use scene::AttributeValues;
 use std::collections::{BTreeSet, HashMap};
+use std::ops::Range;
 use std::path::Path;
 
 const MISSING: u32 = u32::MAX;
@@ -58,9 +66,24 @@ pub(crate) fn used_materials(bytes: &[u8]) -> BTreeSet<String> {
     lines.map(|name| String::from_utf8_lossy(name).trim().to_owned()).collect()
 }
 
+/// Returns true if a position in the OBJ text `bytes` has a colour.
+pub(crate) fn has_colours(bytes: &[u8]) -> bool {
+    lines(bytes).any(|line| {
+        let line = line.trim_ascii();
+        line.starts_with(b"v") && line.get(1).is_some_and(u8::is_ascii_whitespace) && is_coloured(&line[1..])
+    })
+}
+
+/// Returns true if the numbers of a position have a colour after them.
+fn is_coloured(rest: &[u8]) -> bool {
+    rest.split(|b| b.is_ascii_whitespace()).filter(|token| !token.is_empty()).count() >= 6
+}
+
 #[derive(Default)]
 struct Reader {
     positions: Vec<DVec3>,
+    /// Colours of the positions up to the last one that has a colour.
+    colours: Vec<Rgb>,
     uvs: Vec<Vec2>,
     normals: Vec<Vec3>,
     /// First vertex of each position. `next` chains the others, which is faster than a hash map for typical files.
@@ -91,7 +114,7 @@ impl Reader {
         let word_end = line.iter().position(|b| b.is_ascii_whitespace()).unwrap_or(line.len());
         let (word, rest) = line.split_at(word_end);
         match word {
-            b"v" => self.positions.push(DVec3::from(numbers(rest)?)),
+            b"v" => self.position(rest)?,
             b"vn" => self.normals.push(DVec3::from(numbers(rest)?).as_vec3()),
             b"vt" => {
                 // The second coordinate may be left out (1-D textures).
@@ -115,6 +138,18 @@ impl Reader {
             }
             _ => {}
         }
+        Ok(())
+    }
+
+    /// Reads a position, and the colour after it if there are six numbers or more.
+    fn position(&mut self, rest: &[u8]) -> Result<(), String> {
+        let [x, y, z] = numbers(rest)?;
+        if is_coloured(rest) {
+            let [.., r, g, b] = numbers::<6>(rest)?;
+            self.colours.resize(self.positions.len(), Rgb::ONE);
+            self.colours.push(Rgb::from([r, g, b].map(|code| srgb_to_linear(code as f32))));
+        }
+        self.positions.push(DVec3::new(x, y, z));
         Ok(())
     }
 
@@ -173,7 +208,7 @@ impl Reader {
     }
 
     fn finish(self) -> RawMesh {
-        let Reader { positions, uvs, normals, vertices, mut mesh, .. } = self;
+        let Reader { positions, colours, uvs, normals, vertices, mut mesh, .. } = self;
         mesh.positions = vertices.iter().map(|v| positions[v.position as usize]).collect();
         if vertices.iter().any(|v| v.uv != MISSING) {
             mesh.uvs = vertices.iter().map(|v| uvs.get(v.uv as usize).copied().unwrap_or_default()).collect();
@@ -183,6 +218,11 @@ impl Reader {
             let normal = |v: &ObjVertex| normals.get(v.normal as usize).copied().unwrap_or_default();
             mesh.normals = vertices.iter().map(normal).collect();
         }
+        if !colours.is_empty() {
+            let colour = |v: &ObjVertex| colours.get(v.position as usize).copied().unwrap_or(Rgb::ONE);
+            let colours = vertices.iter().map(colour).collect();
+            mesh.attributes.push(NamedAttribute::of_vertices(VERTEX_COLOUR, colours));
+        }
         mesh
     }
 }
@@ -191,7 +231,7 @@ impl Reader {
 pub(crate) fn split_by_material(raw: RawMesh) -> Vec<(String, RawMesh)> {
     let mut names: Vec<String> = Vec::new();
     let mut of_name: HashMap<String, usize> = HashMap::new();
-    let mut parts: Vec<Vec<[u32; 3]>> = Vec::new();
+    let mut parts: Vec<Vec<Range<usize>>> = Vec::new();
     let mut groups = raw.groups.clone();
     groups.insert(0, (String::new(), 0));
     for (g, (name, start)) in groups.iter().enumerate() {
@@ -204,24 +244,23 @@ pub(crate) fn split_by_material(raw: RawMesh) -> Vec<(String, RawMesh)> {
             parts.push(Vec::new());
             names.len() - 1
         });
-        parts[part].extend_from_slice(&raw.triangles[*start..end]);
+        parts[part].push(*start..end);
     }
-    names
-        .into_iter()
-        .zip(parts)
-        .map(|(name, triangles)| (name, with_used_vertices(&raw, triangles)))
-        .collect()
+    names.into_iter().zip(parts).map(|(name, ranges)| (name, with_used_vertices(&raw, &ranges))).collect()
 }
 
-/// Returns the mesh of `triangles` with the vertices of `raw` that they use. The reader guarantees that indices are in
-/// range.
-fn with_used_vertices(raw: &RawMesh, mut triangles: Vec<[u32; 3]>) -> RawMesh {
+/// Returns the mesh of ranges of the triangles of `raw` with the vertices that they use. The reader guarantees that
+/// indices are in range.
+fn with_used_vertices(raw: &RawMesh, ranges: &[Range<usize>]) -> RawMesh {
+    let mut triangles: Vec<[u32; 3]> = chosen(&raw.triangles, ranges);
+    let mut used = Vec::new();
     let mut renumbered = vec![MISSING; raw.positions.len()];
     let mut part = RawMesh::default();
     for i in triangles.iter_mut().flatten() {
         let old = *i as usize;
         if renumbered[old] == MISSING {
             renumbered[old] = part.positions.len() as u32;
+            used.push(*i);
             part.positions.push(raw.positions[old]);
             part.uvs.extend(raw.uvs.get(old));
             part.normals.extend(raw.normals.get(old));
@@ -230,10 +269,22 @@ fn with_used_vertices(raw: &RawMesh, mut triangles: Vec<[u32; 3]>) -> RawMesh {
         *i = renumbered[old];
     }
     part.triangles = triangles;
+    part.attributes = raw.attributes.clone();
+    reorder(&mut part.attributes, &used);
+    for attribute in &mut part.attributes {
+        if let AttributeValues::Triangles(values) = &mut attribute.values {
+            *values = chosen(values, ranges);
+        }
+    }
     part
 }
 
-/// Parses the first `N` numbers of a line. Further ones (w, vertex colours) are ignored.
+/// Returns the values in some ranges.
+fn chosen<T: Clone>(values: &[T], ranges: &[Range<usize>]) -> Vec<T> {
+    ranges.iter().flat_map(|range| values[range.clone()].iter().cloned()).collect()
+}
+
+/// Parses the first `N` numbers of a line. Further ones are ignored.
 pub(super) fn numbers<const N: usize>(rest: &[u8]) -> Result<[f64; N], String> {
     let mut values = [0.0; N];
     let mut tokens = rest.split(|b| b.is_ascii_whitespace()).filter(|t| !t.is_empty());

@@ -1,6 +1,7 @@
 //! Reader of Mitsuba's `.serialized` meshes, file versions 3 and 4: deflated blocks and a table of their offsets.
 
 use super::RawMesh;
+use crate::attributes::{NamedAttribute, VERTEX_COLOUR};
 use crate::error::{Location, SceneError};
 use flate2::read::ZlibDecoder;
 use glam::{DVec3, Vec2};
@@ -51,7 +52,9 @@ fn read_block(bytes: &[u8], index: usize) -> Result<RawMesh, String> {
         mesh.uvs = uvs.as_chunks::<2>().0.iter().map(|&[u, v]| Vec2::new(u as f32, v as f32)).collect();
     }
     if flags & HAS_COLOURS != 0 {
-        stream.floats(vertex_count, 3, doubles)?;
+        let colours = stream.floats(vertex_count, 3, doubles)?;
+        let colours = colours.as_chunks::<3>().0.iter().map(|&c| DVec3::from(c).as_vec3()).collect();
+        mesh.attributes.push(NamedAttribute::of_vertices(VERTEX_COLOUR, colours));
     }
     let indices = stream.bytes(triangle_count, 12)?;
     let index_of = |t: &[u8; 12], k: usize| array(t, 4 * k).map_or(u32::MAX, u32::from_le_bytes);

@@ -8,7 +8,7 @@ use crate::mesh::{Normals, Placement, shapes};
 use crate::plan::{MaterialPlan, MeshPlan, MeshSource};
 use crate::selection::PartSelection;
 use glam::{DMat4, DVec3};
-use scene::{Material, MaterialId};
+use scene::{MaterialId, TextureId};
 
 impl Converter<'_> {
     /// Adds a shape with the outer transform `outer`: a mesh, or the meshes of a group.
@@ -116,7 +116,9 @@ impl Converter<'_> {
         };
         let bsdfs = self.tagged(shape, "bsdf")?;
         let material = self.material_of_shape(bsdfs.first(), emission.is_some())?;
-        let textured = self.is_textured(material) || emission.is_some_and(|e| e.texture.is_some());
+        let of_emission = emission.and_then(|emission| emission.texture);
+        let textured =
+            self.reads_images(material) || of_emission.is_some_and(|texture| self.contents.is_image(texture));
         let to_world = shape.transform("to_world")?.unwrap_or(DMat4::IDENTITY);
         // Mitsuba turns a sphere inside out if the sphere's own transform mirrors it.
         let is_turned = shape.plugin == "sphere" && to_world.determinant() < 0.0;
@@ -144,7 +146,12 @@ impl Converter<'_> {
         self.log.note(&shape.place, what, "128 facets around, area and normals exact");
     }
 
-    fn is_textured(&self, id: MaterialId) -> bool {
-        self.contents.materials.get(id.0 as usize).is_some_and(Material::is_textured)
+    /// Returns true if a material looks images up.
+    fn reads_images(&self, id: MaterialId) -> bool {
+        let is_image = |texture: &TextureId| self.contents.is_image(*texture);
+        self.contents
+            .materials
+            .get(id.0 as usize)
+            .is_some_and(|material| material.relief.is_some() || material.textures().iter().any(is_image))
     }
 }

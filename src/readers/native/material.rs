@@ -1,7 +1,9 @@
 //! Materials of the native format.
 
 use super::builder::SceneBuilder;
-use super::text::{ColourText, FilterText, MapText, MaterialText, Number, NumberText, TextureText, WrapText};
+use super::text::{
+    AttributeText, ColourText, FilterText, MapText, MaterialText, Number, NumberText, TextureText, WrapText,
+};
 use crate::check;
 use crate::error::{Location, SceneError};
 use crate::layers;
@@ -227,6 +229,7 @@ impl SceneBuilder<'_> {
             }
             NumberText::File(file) => self.number(TextureText { file, ..TextureText::default() }, place),
             NumberText::Texture(texture) => self.number(texture, place),
+            NumberText::Attribute(attribute) => self.attribute_number(&attribute, place),
         };
         let distribution = match text.distribution.as_deref() {
             None | Some("ggx") => Distribution::Ggx,
@@ -291,7 +294,25 @@ impl SceneBuilder<'_> {
             NumberText::Number(Number(number)) => Share::Constant(number as f32),
             NumberText::File(file) => self.number(TextureText { file, ..TextureText::default() }, place),
             NumberText::Texture(texture) => self.number(texture, place),
+            NumberText::Attribute(attribute) => self.attribute_number(&attribute, place),
         }
+    }
+
+    fn attribute_number(&mut self, text: &AttributeText, place: &Location) -> Parameter<f32> {
+        let texture = self.attribute_id(text, true, place);
+        Parameter::Textured { texture, scale: text.scale() as f32 }
+    }
+
+    /// Returns the texture that is an attribute of meshes. `raw` is true if its image holds numbers.
+    pub(super) fn attribute_id(&mut self, text: &AttributeText, raw: bool, place: &Location) -> TextureId {
+        let image = text.image.as_ref().map(|image| {
+            let image = match image.clone() {
+                MapText::File(file) => TextureText { file, ..TextureText::default() },
+                MapText::Texture(texture) => texture,
+            };
+            self.texture_id(&TextureText { raw: raw || image.raw, ..image }, place)
+        });
+        self.contents.add_attribute(&text.attribute, image)
     }
 
     fn number(&mut self, text: TextureText, place: &Location) -> Parameter<f32> {

@@ -3,9 +3,9 @@
 use super::builder::SceneBuilder;
 use super::text::{ColourText, MeshText, NamesText, Number, ScaleText, StepText};
 use crate::error::{Location, SceneError};
-use crate::file::stem_of;
+use crate::file::{read_file, stem_of};
 use crate::gltf::{self, FRAMES_PER_SECOND, ImportOptions};
-use crate::mesh::{Normals, Placement, RawMesh, shapes};
+use crate::mesh::{Normals, Placement, RawMesh, ply, shapes};
 use crate::plan::{MaterialPlan, MeshPlan, MeshSource};
 use crate::selection::PartSelection;
 use base::math::unit;
@@ -33,6 +33,9 @@ impl SceneBuilder<'_> {
         let material = match (self.named_material(text)?, &geometry) {
             (Some(material), _) => MaterialPlan::One(material),
             (None, MeshSource::Obj(path, _)) => self.mtl_materials(path, &place)?,
+            (None, MeshSource::Ply(path)) if ply::has_colours(&read_file(path, &place)?) => {
+                MaterialPlan::One(self.default_material(true, &place))
+            }
             (None, _) => {
                 return Err(place.wrong("the mesh has no material", "add material = \"...\""));
             }
@@ -161,8 +164,8 @@ impl SceneBuilder<'_> {
 
     /// Reads the materials of the OBJ's MTL files. They are assigned by name.
     fn mtl_materials(&mut self, path: &Path, place: &Location) -> Result<MaterialPlan, SceneError> {
-        let names = self.read_mtl(path, place)?;
-        let other = self.default_material(place);
+        let (names, has_colours) = self.read_mtl(path, place)?;
+        let other = self.default_material(has_colours, place);
         Ok(MaterialPlan::ByName(names, other))
     }
 }

@@ -9,6 +9,7 @@
 
 use super::builder::SceneBuilder;
 use super::text::TextureText;
+use crate::attributes::COLOUR;
 use crate::error::{Location, SceneError};
 use crate::file::{fnv1a, folder_of, read_file};
 use crate::mesh::mtl::{self, ClassicMaterial};
@@ -23,15 +24,16 @@ use std::path::Path;
 const MAX_DIELECTRIC: f32 = 0.08;
 
 impl SceneBuilder<'_> {
-    /// Reads the materials of the OBJ's libraries, by name.
+    /// Reads the materials of the OBJ's libraries, by name. Returns also whether the OBJ has colours of vertices.
     pub(super) fn read_mtl(
         &mut self,
         path: &Path,
         place: &Location,
-    ) -> Result<BTreeMap<String, Appearance>, SceneError> {
+    ) -> Result<(BTreeMap<String, Appearance>, bool), SceneError> {
         let mut appearances = BTreeMap::new();
         let text = read_file(path, place)?;
         let used = obj::used_materials(&text);
+        let has_colours = obj::has_colours(&text);
         let from = Location::file(path);
         let folder = folder_of(path);
         for library in obj::material_libraries(&text) {
@@ -47,21 +49,26 @@ impl SceneBuilder<'_> {
                 appearances.insert(source.name, Appearance { material, emission });
             }
         }
-        if appearances.is_empty() {
+        if appearances.is_empty() && !has_colours {
             self.log.warn(
                 place,
                 "neither the mesh nor its file has a material",
                 "a grey of 0.5 stands in",
             )?;
         }
-        Ok(appearances)
+        Ok((appearances, has_colours))
     }
 
-    /// Returns the material of faces without one.
-    pub(super) fn default_material(&mut self, place: &Location) -> MaterialId {
-        let grey = Reflectance::Constant(Rgb::splat(0.5));
-        let material =
-            Material { name: "default".into(), two_sided: true, diffuse: grey, ..Material::default() };
+    /// Returns the material of faces without one: diffuse, of the colours of the mesh if it has some, else grey.
+    pub(super) fn default_material(&mut self, has_colours: bool, place: &Location) -> MaterialId {
+        let diffuse = match has_colours {
+            true => {
+                let texture = self.contents.add_attribute(COLOUR, None);
+                Reflectance::Textured { texture, scale: Rgb::ONE }
+            }
+            false => Reflectance::Constant(Rgb::splat(0.5)),
+        };
+        let material = Material { name: "default".into(), two_sided: true, diffuse, ..Material::default() };
         self.contents.add_material(material, place.clone())
     }
 

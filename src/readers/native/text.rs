@@ -153,7 +153,7 @@ pub(super) struct MaterialText {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(
     untagged,
-    expecting = "expected a number, [r, g, b], \"#rrggbb\", { colour = ..., scale = ... } or an image"
+    expecting = "expected a number, [r, g, b], \"#rrggbb\", { colour = ..., scale = ... }, { attribute = \"...\" } or an image"
 )]
 pub(super) enum ColourText {
     Grey(Number),
@@ -165,19 +165,21 @@ pub(super) enum ColourText {
         colour: Box<ColourText>,
         scale: Number,
     },
+    Attribute(AttributeText),
     Texture(TextureText),
 }
 
-/// A number, or an image with or without options.
+/// A number, an image with or without options, or an attribute.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(
     untagged,
     deny_unknown_fields,
-    expecting = "expected a number, an image's name or { file = \"...\" }"
+    expecting = "expected a number, an image's name, { file = \"...\" } or { attribute = \"...\" }"
 )]
 pub(super) enum NumberText {
     Number(Number),
     File(String),
+    Attribute(AttributeText),
     Texture(TextureText),
 }
 
@@ -187,6 +189,24 @@ pub(super) enum NumberText {
 pub(super) enum MapText {
     File(String),
     Texture(TextureText),
+}
+
+/// An attribute of the mesh, such as vertex colours.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct AttributeText {
+    pub attribute: String,
+    /// Factor on every value.
+    pub scale: Option<Number>,
+    /// Image to multiply with.
+    pub image: Option<MapText>,
+}
+
+impl AttributeText {
+    /// Returns the factor on every value.
+    pub fn scale(&self) -> f64 {
+        self.scale.map_or(1.0, f64::from)
+    }
 }
 
 #[derive(Clone, Debug, Default, Deserialize)]

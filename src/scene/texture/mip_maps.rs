@@ -7,6 +7,7 @@
 
 use super::image::{Filter, Texture, TextureId};
 use super::textures::Textures;
+use crate::attribute::AttributeId;
 use base::math::Rgb;
 use glam::Vec2;
 
@@ -58,13 +59,20 @@ impl MipMaps {
     }
 
     /// Returns the colour of a texture at `uv`, averaged over a square of side `covered` in texture coordinates if the
-    /// texture has coarser versions; white if there is no such texture.
+    /// texture has coarser versions; white if there is no such texture. `attribute` returns the value of an attribute.
     #[inline]
-    pub fn lookup(&self, id: TextureId, uv: Vec2, covered: f32) -> Rgb {
-        self.textures.by_id(id).map_or(Rgb::ONE, |texture| match covered > 0.0 {
-            true => self.level(texture, id, covered).lookup(uv),
-            false => texture.lookup(uv),
-        })
+    pub fn lookup(
+        &self,
+        id: TextureId,
+        uv: Vec2,
+        covered: f32,
+        attribute: impl FnOnce(AttributeId) -> Rgb,
+    ) -> Rgb {
+        match self.textures.by_id(id) {
+            Some(texture) if covered > 0.0 => self.level(texture, id, covered).lookup(uv),
+            Some(texture) => texture.lookup(uv),
+            None => self.textures.lookup_attribute(id, uv, attribute),
+        }
     }
 
     /// Returns the version of a texture for lookups that stand for a square of side `covered` in texture coordinates.
@@ -138,7 +146,7 @@ mod tests {
             for i in 0..20 {
                 let at = |y: f32| {
                     let uv = Vec2::new(0.0317 * i as f32, y);
-                    maps.lookup(TextureId(0), uv, covered / 64.0)
+                    maps.lookup(TextureId(0), uv, covered / 64.0, |_| Rgb::ZERO)
                 };
                 let near = |found: Rgb, expected: Rgb| (found - expected).abs().max_element() < 1e-5;
                 assert!(near(at(0.75), Rgb::splat(0.5)) && near(at(0.25), Rgb::X * 0.5), "{covered} {i}");

@@ -5,7 +5,7 @@ use super::factor::EmissionFactor;
 use base::math::{F32x16, Rgb, U32x16, luminance};
 use base::sampling::uniform_triangle;
 use glam::{Vec2, Vec3};
-use scene::{Emission, Scene, Share, Texture};
+use scene::{AttributeTexture, Emission, Mesh, Scene, Share, Texture, TextureId};
 
 /// A mesh that emits.
 #[derive(Clone, Debug)]
@@ -66,11 +66,8 @@ impl AreaLight {
         if !(area > 0.0) {
             return None;
         }
-        let (mean_texture, greatest) = emission.texture.map_or((Rgb::ONE, Rgb::ONE), |t| {
-            let Some(Texture { texels, .. }) = scene.textures.by_id(t) else { return (Rgb::ONE, Rgb::ONE) };
-            let mean = texels.iter().sum::<Rgb>() / texels.len().max(1) as f32;
-            (mean, texels.iter().fold(Rgb::ZERO, Rgb::max))
-        });
+        let (mean_texture, greatest) =
+            emission.texture.map_or((Rgb::ONE, Rgb::ONE), |texture| mean_and_greatest(scene, mesh, texture));
         let greatest = (emission.radiance * greatest).max_element();
         // What is not there does not shine.
         let material = scene.materials.get(mesh.material.0 as usize);
@@ -80,7 +77,7 @@ impl AreaLight {
         }
         let factor = EmissionFactor::new(scene, mesh, emission.texture, opacity);
         let mean = match &factor {
-            Some(factor) if factor.has_opacity() => factor.mean_over(&triangles),
+            Some(factor) if factor.has_opacity() => factor.mean_over(&triangles, mean_texture),
             _ => mean_texture,
         };
         let sides = if emission.two_sided { 2.0 } else { 1.0 };
@@ -170,4 +167,25 @@ impl AreaLight {
         }
         self.emission.radiance * self.factor(triangle, barycentric)
     }
+}
+
+/// Returns the mean of a texture on a mesh, and the maximum of each channel. Those of a product are products.
+fn mean_and_greatest(scene: &Scene, mesh: &Mesh, texture: TextureId) -> (Rgb, Rgb) {
+    let Some(AttributeTexture { attribute, image }) = scene.textures.attribute(texture) else {
+        return of_texels(scene, texture);
+    };
+    let (mean, greatest) = image.map_or((Rgb::ONE, Rgb::ONE), |image| of_texels(scene, image));
+    let Some(found) = mesh.attributes.iter().find(|found| found.id == *attribute) else {
+        return (mean, greatest);
+    };
+    let (sum, area) = mesh.integrate_attribute(*attribute);
+    let of_attribute = found.values.all().iter().copied().fold(Rgb::ZERO, Rgb::max);
+    (mean * (sum / area).as_vec3(), greatest * of_attribute)
+}
+
+/// Returns the mean of an image's texels, and the maximum of each channel.
+fn of_texels(scene: &Scene, image: TextureId) -> (Rgb, Rgb) {
+    let Some(Texture { texels, .. }) = scene.textures.by_id(image) else { return (Rgb::ONE, Rgb::ONE) };
+    let mean = texels.iter().sum::<Rgb>() / texels.len().max(1) as f32;
+    (mean, texels.iter().fold(Rgb::ZERO, Rgb::max))
 }

@@ -56,6 +56,7 @@ fn lamp(position: Vec3, direction: Vec3, size: f32, radiance: Rgb, two_sided: bo
         triangles: vec![[0, 1, 2], [2, 1, 3]],
         material: MaterialId(0),
         emission: Some(Emission { radiance, texture: None, two_sided }),
+        attributes: Vec::new(),
     }
 }
 

@@ -5,10 +5,10 @@
 //! gaps. Definitions are those of Mitsuba 3, so that images agree with its references: `diffuse`, `plastic`,
 //! `roughplastic`, `conductor`, `roughconductor`, `dielectric`, `roughdielectric`, `principled`, `mask` and `twosided`.
 //!
-//! Files use only files before them in this order: `microfacet`, `fresnel`, `table` and `albedo`; `base` and `lobe`
-//! (one file per lobe); `model` and `lobe_set` (data); `bsdf`, `sample`, `bound`, `packet`, `alike16`, `prepared`,
-//! `mean` and `straight` (evaluation); `colours`, `layers` and `build` (from the scene's materials); `materials`
-//! (lookup).
+//! Files use only files before them in this order: `microfacet`, `fresnel`, `table` and `albedo`; `means`; `base` and
+//! `lobe` (one file per lobe); `model` and `lobe_set` (data); `bsdf`, `sample`, `bound`, `packet`, `alike16`,
+//! `prepared`, `mean` and `straight` (evaluation); `colours`, `layers` and `build` (from the scene's materials);
+//! `materials` (lookup).
 //!
 //! All directions are in the local shading frame (z = shading normal), point away from the surface and have unit
 //! length: `wo` towards the eye or the previous vertex of the path, `wi` towards the light.
@@ -26,6 +26,7 @@ mod lobe;
 mod lobe_set;
 mod materials;
 mod mean;
+mod means;
 mod microfacet;
 mod model;
 mod packet;

@@ -65,7 +65,12 @@ fn check_emitters(draft: &mut Draft, report: &mut SanitizeReport) -> Result<(), 
     for mesh in &mut draft.meshes {
         let Some(emission) = mesh.emission else { continue };
         check_light(emission.radiance, &format!("mesh \"{}\": the radiance", mesh.name), &place)?;
-        let is_dark = emission.radiance == Rgb::ZERO || emission.texture.is_some_and(is_black);
+        let of_attribute = emission.texture.and_then(|id| draft.scene.textures.attribute(id));
+        let name = of_attribute.and_then(|of| draft.attribute_names.get(of.attribute.0 as usize));
+        let values = mesh.attributes.iter().find(|attribute| Some(&attribute.name) == name);
+        let is_dark = emission.radiance == Rgb::ZERO
+            || emission.texture.is_some_and(&is_black)
+            || values.is_some_and(|found| found.values.all().iter().all(|value| *value == Rgb::ZERO));
         if is_dark || is_absent(mesh.material) {
             report.black_lights += 1;
             mesh.emission = None;

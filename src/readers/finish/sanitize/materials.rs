@@ -223,22 +223,25 @@ fn scale_sum(
     Ok(())
 }
 
-fn clamp_texels(texture: &mut Texture, scale: Rgb, report: &mut SanitizeReport) {
+pub(super) fn clamp_texels(texture: &mut Texture, scale: Rgb, report: &mut SanitizeReport) {
     let limit = scale.max(Rgb::ONE).recip();
     let fits = |texel: Rgb| texel.cmpge(Rgb::ZERO).all() && texel.cmple(limit).all();
     if texture.texels.all(fits) {
         return;
     }
     let mut texels: Vec<Rgb> = texture.texels.iter().collect();
-    for texel in &mut texels {
-        if !texel.is_finite() || texel.min_element() < 0.0 {
-            report.bad_texels += 1;
-            *texel = if texel.is_nan() { Rgb::ZERO } else { texel.max(Rgb::ZERO) };
-        }
-        if texel.cmpgt(limit).any() {
-            report.clamped += 1;
-            *texel = texel.min(limit);
-        }
-    }
+    texels.iter_mut().for_each(|texel| clamp_value(texel, limit, report));
     texture.texels = Texels::new(texture.width, &texels);
+}
+
+/// Raises a value to 0 and lowers it to a limit; NaN becomes 0.
+pub(super) fn clamp_value(value: &mut Rgb, limit: Rgb, report: &mut SanitizeReport) {
+    if !value.is_finite() || value.min_element() < 0.0 {
+        report.bad_texels += 1;
+        *value = if value.is_nan() { Rgb::ZERO } else { value.max(Rgb::ZERO) };
+    }
+    if value.cmpgt(limit).any() {
+        report.clamped += 1;
+        *value = value.min(limit);
+    }
 }

@@ -6,6 +6,7 @@
 //! - Reflectances that would create energy are clamped.
 //! - Negative light is an error, because no image could be computed from it.
 
+mod attributes;
 mod cameras;
 mod lights;
 mod materials;
@@ -18,6 +19,7 @@ use super::framing;
 use super::recentre::LocalCoordinates;
 use crate::draft::Draft;
 use crate::error::{Log, SceneError};
+use attributes::repair_attributes;
 use cameras::check_camera;
 use glam::{Vec2, Vec4};
 use lights::check_lights;
@@ -72,6 +74,7 @@ pub(crate) fn sanitize(
         let checked = check_material(material, draft.scene.textures.edit(), place(i), &mut report, log);
         log.part(checked);
     }
+    repair_attributes(draft, &mut report);
     if let Some(texture) = draft.scene.textures.iter().find(|texture| !texture.to_uv.is_finite()) {
         let what = format!("the image \"{}\" is moved or scaled beyond all numbers", texture.name);
         log.part::<()>(Err(draft.main_file().wrong(what, "correct its transform")));

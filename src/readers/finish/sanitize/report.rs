@@ -24,9 +24,9 @@ pub struct SanitizeReport {
     pub bad_uvs: usize,
     /// NaN or infinite tangents; the direction of growing u stands in.
     pub bad_tangents: usize,
-    /// Reflectances clamped to 1, and texels clamped to values that cannot create energy.
+    /// Reflectances clamped to 1, and texels and attributes clamped to values that cannot create energy.
     pub clamped: usize,
-    /// NaN, infinite or negative texels, set to 0.
+    /// NaN, infinite or negative texels and attributes, set to 0.
     pub bad_texels: usize,
     /// Emitters, lights and environments without light, dropped.
     pub black_lights: usize,

@@ -1,3 +1,4 @@
+mod colours;
 mod container;
 mod model;
 mod samples;

@@ -53,6 +53,7 @@ fn world() -> World {
             triangles,
             material: MaterialId(0),
             emission: None,
+            attributes: Vec::new(),
         });
     };
     let n = 4u32;
