@@ -68,6 +68,8 @@ pub(crate) struct DraftMesh {
     pub emission: Option<Emission>,
     /// Number of triangles whose winding was reversed to agree with their vertex normals.
     pub turned: usize,
+    /// True if the file has no texture coordinates for some triangles.
+    pub lacks_uvs: bool,
 }
 
 /// A scene whose positions are still in world coordinates.

@@ -17,10 +17,13 @@ pub mod error;
 mod file;
 mod finish;
 mod gltf;
+mod lacking_uvs;
 mod layers;
 mod mesh;
 #[cfg(test)]
 mod mirrored_tests;
+#[cfg(test)]
+mod missing_tests;
 mod mitsuba;
 mod native;
 mod options;
@@ -30,7 +33,9 @@ mod realise;
 mod requirements_tests;
 mod selection;
 mod sky;
+mod stand_in;
 mod statements;
+mod surfaces;
 
 use error::Log;
 use finish::{divide, recentre, sanitize};
