@@ -69,6 +69,8 @@ pub(crate) struct DraftMesh {
     pub emission: Option<Emission>,
     /// Number of triangles whose winding was reversed to agree with their vertex normals.
     pub turned: usize,
+    /// True if the file has no texture coordinates for some triangles.
+    pub lacks_uvs: bool,
     pub attributes: Vec<NamedAttribute>,
 }
 

@@ -126,6 +126,26 @@ const SCENES: [NamedScene; 17] = [
             let lamp = quad(Vec3::new(-h, d, -h), Vec3::X * 2.0 * h, Vec3::Z * 2.0 * h, black);
             let radiance = Rgb::splat(IRRADIANCE / (PI * 4.0 * corner_factor));
             let shares = vec![Rgb::new(0.2, 1.0, 2.0), Rgb::new(1.8, 1.0, 0.0)];
+            let mut lamp = with_attribute(lamp, AttributeValues::Triangles(shares));
+            lamp.emission = Some(Emission { radiance, texture, two_sided: false });
+            scene.meshes.push(lamp);
+        })
+    }),
+    ("a floor in the shadow of a screen whose vertices are opaque in part", || {
+        let direction = -Vec3::new(0.0, 2.0, 1.5).normalize();
+        floor(|scene| {
+            let texture = add_attribute_texture(scene, AttributeId(0), None);
+            let opacity = Some(Share::Textured { texture, scale: 0.5 });
+            let screen = add_material(scene, Material { opacity, ..diffuse(Rgb::ZERO) });
+            let screen = quad(Vec3::new(-0.2, 1.0, 0.55), Vec3::X * 0.4, Vec3::Z * 0.4, screen);
+            // The ray to the point passes the middle of the diagonal between the first and the third corner.
+            let opacities = [0.6, 0.0, 1.0, 0.0].map(Rgb::splat).to_vec();
+            scene.meshes.push(with_attribute(screen, AttributeValues::Vertices(opacities)));
+            let irradiance = Rgb::splat(IRRADIANCE / 0.8 / (1.0 - 0.5 * 0.8));
+            scene.lights.push(DeltaLight::Directional { direction, irradiance });
+        })
+    }),
+];
 
 /// Adds the parallel square over the floor. Its material covers the share `opacity` of it on average.
 fn square_lamp(scene: &mut Scene, material: MaterialId, opacity: f32) {
@@ -154,26 +174,6 @@ fn leaves(scene: &mut Scene, filter: Filter) {
         scene.meshes.push(mesh);
     }
 }
-            let mut lamp = with_attribute(lamp, AttributeValues::Triangles(shares));
-            lamp.emission = Some(Emission { radiance, texture, two_sided: false });
-            scene.meshes.push(lamp);
-        })
-    }),
-    ("a floor in the shadow of a screen whose vertices are opaque in part", || {
-        let direction = -Vec3::new(0.0, 2.0, 1.5).normalize();
-        floor(|scene| {
-            let texture = add_attribute_texture(scene, AttributeId(0), None);
-            let opacity = Some(Share::Textured { texture, scale: 0.5 });
-            let screen = add_material(scene, Material { opacity, ..diffuse(Rgb::ZERO) });
-            let screen = quad(Vec3::new(-0.2, 1.0, 0.55), Vec3::X * 0.4, Vec3::Z * 0.4, screen);
-            // The ray to the point passes the middle of the diagonal between the first and the third corner.
-            let opacities = [0.6, 0.0, 1.0, 0.0].map(Rgb::splat).to_vec();
-            scene.meshes.push(with_attribute(screen, AttributeValues::Vertices(opacities)));
-            let irradiance = Rgb::splat(IRRADIANCE / 0.8 / (1.0 - 0.5 * 0.8));
-            scene.lights.push(DeltaLight::Directional { direction, irradiance });
-        })
-    }),
-];
 
 /// Gives a mesh an attribute.
 fn with_attribute(mut mesh: Mesh, values: AttributeValues) -> Mesh {

@@ -1,6 +1,7 @@
 mod colours;
 mod container;
 mod model;
+mod posed;
 mod samples;
 mod skin;
 mod slow_damage;

@@ -1,7 +1,7 @@
 //! Sample models for every feature.
 
 use super::model::Model;
-use super::skin;
+use super::posed;
 use serde_json::{Value, json};
 
 const WHITE: [u8; 4] = [255; 4];
@@ -20,8 +20,8 @@ pub fn all() -> Vec<(&'static str, Model, &'static [&'static str])> {
         ("layers", layers(), &["a quarter", "sheen", "coloured reflection", "more than ten times"]),
         ("unlit", unlit(), &["unlit"]),
         ("topology", topology(), &["points and lines"]),
-        ("skin", skin::arm(), &[]),
-        ("face", skin::face(), &["anything but the camera"]),
+        ("skin", posed::arm(), &[]),
+        ("face", posed::face(), &["anything but the camera"]),
         (
             "unmodelled",
             unmodelled(),
