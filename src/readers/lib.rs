@@ -8,6 +8,7 @@
 
 #![forbid(unsafe_code)]
 
+mod attenuation;
 mod budget;
 mod check;
 mod constants;

@@ -7,7 +7,9 @@
 
 #![forbid(unsafe_code)]
 
+mod absorption;
 mod hidden;
+mod interior;
 pub mod light;
 pub mod material;
 mod meshes;
@@ -27,6 +29,7 @@ pub mod view;
 mod world;
 
 pub use embree::{EmbreeError, Ray};
+pub use interior::Interior;
 pub use meshes::triangle_meshes;
 pub use packet::Surfaces16;
 pub use sheets::beyond;

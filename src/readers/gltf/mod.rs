@@ -20,6 +20,7 @@ mod mesh;
 mod nodes;
 mod report;
 mod texture;
+mod volume;
 
 use crate::draft::{DEFAULT_RESOLUTION, DraftCamera, Shot};
 use crate::error::{Location, Log, SceneError};

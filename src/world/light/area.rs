@@ -72,7 +72,7 @@ impl AreaLight {
             (mean, texels.iter().fold(Rgb::ZERO, Rgb::max))
         });
         let greatest = (emission.radiance * greatest).max_element();
-        // What is not there does not shine.
+        // Gaps do not shine.
         let material = scene.materials.get(mesh.material.0 as usize);
         let opacity = material.and_then(|material| material.opacity);
         if let Some(Share::Constant(share)) = opacity {
