@@ -8,6 +8,7 @@
 
 #![forbid(unsafe_code)]
 
+mod attenuation;
 #[cfg(test)]
 mod attribute_tests;
 mod attributes;

@@ -1,5 +1,6 @@
 //! A scene prepared for rendering.
 
+use crate::absorption::Absorption;
 use crate::light::Emitters;
 use crate::material::{Bsdf, Materials};
 use crate::meshes::{self, triangle_meshes};
@@ -32,6 +33,7 @@ pub struct World {
     pub(super) reliefs: Option<Reliefs>,
     /// Ray queries over the surfaces that light passes straight through, if there are any.
     pub(super) sheets: Option<Accel>,
+    pub(super) absorption: Absorption,
 }
 
 impl World {
@@ -53,7 +55,19 @@ impl World {
         let triangles = Triangles::new(&scene);
         let sheets = meshes::sheets(&scene, &materials, &accel)?;
         let reliefs = Reliefs::new(&scene);
-        Ok(World { scene, accel, materials, emitters, specular, diagonal, triangles, reliefs, sheets })
+        let absorption = Absorption::new(&scene);
+        Ok(World {
+            scene,
+            accel,
+            materials,
+            emitters,
+            specular,
+            diagonal,
+            triangles,
+            reliefs,
+            sheets,
+            absorption,
+        })
     }
 
     /// Rebuilds the acceleration structure at another quality, for benchmarks.

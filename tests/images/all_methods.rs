@@ -23,7 +23,7 @@ const TOLERANCE: f64 = 0.03;
 type NamedScene = (&'static str, fn() -> WorldAndView);
 
 /// Scenes of mean 1, each with the reason.
-const SCENES: [NamedScene; 17] = [
+const SCENES: [NamedScene; 18] = [
     ("nothing before a sky of radiance 1", || {
         let mut scene = scene(camera(Vec3::ZERO, Vec3::X, 0.5), [8, 8]);
         scene.environment = Some(Environment::Constant(Rgb::ONE));
@@ -50,6 +50,20 @@ const SCENES: [NamedScene; 17] = [
         floor(|scene| {
             let intensity = Rgb::splat(IRRADIANCE * dist_sq / cos);
             scene.lights.push(DeltaLight::Point { position, intensity });
+        })
+    }),
+    ("a floor under a point light in a block of glass that absorbs: I cos / d² exp(-σ l)", || {
+        let (position, cos, dist_sq) = (Vec3::new(0.0, 2.0, 1.5), 2.0 / 2.5, 6.25);
+        let (absorption, inside) = (Rgb::new(0.5, 1.0, 2.0), 0.5 / cos);
+        floor(|scene| {
+            let intensity = (absorption * inside).exp() * (IRRADIANCE * dist_sq / cos);
+            scene.lights.push(DeltaLight::Point { position, intensity });
+            let material = Material { absorption: Some(absorption), ..glass(1.0) };
+            let material = add_material(scene, material);
+            for mut side in room(position - 0.5, position + 0.5, material) {
+                side.triangles.iter_mut().for_each(|corners| corners.swap(1, 2));
+                scene.meshes.push(side);
+            }
         })
     }),
     ("a floor under a spot light, within its inner cone", || {

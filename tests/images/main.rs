@@ -12,6 +12,7 @@ mod kit;
 mod oracle;
 mod presets;
 
+mod absorption;
 mod all_methods;
 mod cache;
 mod cache_artefacts;

@@ -24,6 +24,7 @@ mod pose;
 mod report;
 mod skin;
 mod texture;
+mod volume;
 
 use crate::draft::{DEFAULT_RESOLUTION, DraftCamera, Shot};
 use crate::error::{Location, Log, SceneError};

@@ -83,7 +83,7 @@ impl Importer<'_> {
             Some(Checked::Valid(MagFilter::Nearest)) => Filter::Nearest,
             _ => Filter::Bilinear,
         };
-        // What is interpolated is cut afterwards.
+        // Interpolated values are cut afterwards.
         let (channel, filter) = match (channel, filter) {
             (Channel::AlphaFrom(cutoff), Filter::Bilinear) => (Channel::One(3), Filter::Cut(cutoff)),
             other => other,

@@ -51,6 +51,35 @@ fn materials_are_made_of_others() {
 }
 
 #[test]
+fn glass_absorbs_by_colour_and_distance() {
+    let glass = |more: &str| {
+        let text = format!(
+            "material = [{{ name = \"g\", {more} }}]\n{HEAD}[[mesh]]\nshape = \"sphere\"\nmaterial = \"g\"\n{SKY}"
+        );
+        load_text(&text).map(|loaded| loaded.scene.materials[0].absorption)
+    };
+    let wine = "attenuation_colour = [0.5, 0.25, 1], attenuation_distance = 2";
+    let sigma = Vec3::new(0.5f32.ln(), 0.25f32.ln(), 0.0) * -0.5;
+    for kind in ["kind = \"glass\"", "kind = \"glass\", alpha = 0.2", "kind = \"principled\", spec_trans = 1"]
+    {
+        let found = glass(&format!("{kind}, {wine}")).unwrap().unwrap();
+        assert!((found - sigma).abs().max_element() < 1e-6, "{found}");
+        for nothing in ["attenuation_distance = 3", "attenuation_colour = 1"] {
+            assert_eq!(glass(&format!("{kind}, {nothing}")), Ok(None));
+        }
+        assert!(glass(&format!("{kind}, attenuation_colour = 0")).unwrap().unwrap().is_finite());
+    }
+    for (wrong, message) in [
+        ("kind = \"glass\", thin = true, attenuation_colour = 0.5", "leave out thin"),
+        ("kind = \"glass\", attenuation_colour = 1.5", "from 0 to 1"),
+        ("kind = \"glass\", attenuation_colour = 0.5, attenuation_distance = 0", "distance above 0"),
+    ] {
+        let error = glass(wrong).unwrap_err();
+        assert!(error.contains(message), "{error}");
+    }
+}
+
+#[test]
 fn every_kind_of_material_light_and_step_is_read() {
     let text = r#"
         name = "all"

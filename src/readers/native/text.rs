@@ -130,6 +130,8 @@ pub(super) struct MaterialText {
     pub eta: Option<ColourText>,
     pub k: Option<ColourText>,
     pub thin: Option<bool>,
+    pub attenuation_colour: Option<ColourText>,
+    pub attenuation_distance: Option<Number>,
     pub opacity: Option<NumberText>,
     pub normal_map: Option<MapText>,
     pub bump_map: Option<MapText>,

@@ -13,7 +13,7 @@ use base::stats::add_fields;
 use glam::Vec3;
 use std::f32::consts::FRAC_1_PI;
 use world::shadow;
-use world::{Surface, World};
+use world::{Interior, Surface, World};
 
 /// Maximum number of surfaces that a ray is followed through.
 const MAX_EDGES: u32 = 8;
@@ -57,7 +57,10 @@ impl IndirectLight<'_> {
         mut behind: impl FnMut(Option<&Surface>, Rgb),
     ) -> (Rgb, Rgb) {
         let (mut radiance, mut throughput, mut near) = (Rgb::ZERO, Rgb::ONE, Rgb::ZERO);
-        let mut surface = *first;
+        let (mut surface, mut interior) = (*first, Interior::NONE);
+        if self.world.absorbs() {
+            throughput = self.world.edge_shares(interior, first, direction, 0.0)[1];
+        }
         for edge in 0..MAX_EDGES {
             let bsdf = self.world.bsdf(&surface);
             let out = surface.frame.to_local(-direction);
@@ -79,7 +82,13 @@ impl IndirectLight<'_> {
             counts.followed += 1;
             let ray = shadow::ray_from(surface.position, surface.normal, direction);
             let next = self.world.intersect(&ray);
-            behind(next.as_ref(), throughput);
+            interior = self.world.interior_after(interior, &surface, direction, true);
+            let [of_emission, of_rest] = match &next {
+                Some(next) if self.world.absorbs() => self.world.edge_shares(interior, next, direction, 0.0),
+                _ => [Rgb::ONE; 2],
+            };
+            behind(next.as_ref(), throughput * of_emission);
+            throughput *= of_rest;
             let Some(next) = next else { break };
             surface = next;
         }

@@ -69,7 +69,7 @@ impl AreaLight {
         let (mean_texture, greatest) =
             emission.texture.map_or((Rgb::ONE, Rgb::ONE), |texture| mean_and_greatest(scene, mesh, texture));
         let greatest = (emission.radiance * greatest).max_element();
-        // What is not there does not shine.
+        // Gaps do not shine.
         let material = scene.materials.get(mesh.material.0 as usize);
         let opacity = material.and_then(|material| material.opacity);
         if let Some(Share::Constant(share)) = opacity {

@@ -4,9 +4,10 @@ use super::reach::{IN_REACH, is_within_reach};
 use super::report::SanitizeReport;
 use crate::draft::Draft;
 use crate::error::{Location, SceneError};
+use crate::finish::dark::is_dark_emission;
 use crate::finish::recentre::LocalCoordinates;
 use base::math::Rgb;
-use scene::{DeltaLight, Environment, MaterialId, Share, Texture, TextureId};
+use scene::{DeltaLight, Environment};
 
 /// Checks all lights, and drops black ones.
 pub(super) fn check_lights(
@@ -53,25 +54,14 @@ fn power(light: &DeltaLight) -> Rgb {
 /// Checks the emission of meshes, and drops black emission and that of surfaces that are not there.
 fn check_emitters(draft: &mut Draft, report: &mut SanitizeReport) -> Result<(), SceneError> {
     let place = draft.main_file();
-    let (materials, textures) = (&draft.scene.materials, &draft.scene.textures);
-    let is_black = |id: TextureId| textures.by_id(id).is_some_and(Texture::is_black);
-    let is_absent = |id: MaterialId| {
-        let opacity = materials.get(id.0 as usize).and_then(|material| material.opacity);
-        opacity.is_some_and(|opacity| match opacity {
-            Share::Constant(share) => share <= 0.0,
-            Share::Textured { texture, scale } => scale <= 0.0 || is_black(texture),
-        })
-    };
     for mesh in &mut draft.meshes {
         let Some(emission) = mesh.emission else { continue };
         check_light(emission.radiance, &format!("mesh \"{}\": the radiance", mesh.name), &place)?;
         let of_attribute = emission.texture.and_then(|id| draft.scene.textures.attribute(id));
         let name = of_attribute.and_then(|of| draft.attribute_names.get(of.attribute.0 as usize));
         let values = mesh.attributes.iter().find(|attribute| Some(&attribute.name) == name);
-        let is_dark = emission.radiance == Rgb::ZERO
-            || emission.texture.is_some_and(&is_black)
-            || values.is_some_and(|found| found.values.all().iter().all(|value| *value == Rgb::ZERO));
-        if is_dark || is_absent(mesh.material) {
+        let is_black = values.is_some_and(|found| found.values.all().iter().all(|value| *value == Rgb::ZERO));
+        if is_black || is_dark_emission(&emission, mesh.material, &draft.scene) {
             report.black_lights += 1;
             mesh.emission = None;
         }

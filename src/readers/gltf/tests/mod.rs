@@ -253,8 +253,19 @@ fn glass_is_thin_solid_or_rough() {
         panic!()
     };
     assert!((eta - 1.8).abs() < 1e-5);
-    assert_eq!(transmittance, Reflectance::Constant(Vec3::new(0.25, 1.0, 0.25)));
+    assert_eq!(transmittance, Reflectance::Constant(Vec3::ONE));
+    // The thickness of 2 does not matter, nor does a volume without a distance.
+    let sigma = -0.5f32.ln();
+    let absorption = |loaded: &Loaded, name: &str| material(loaded, name).absorption;
+    assert_eq!(absorption(&loaded, "solid"), Some(Vec3::new(sigma, 0.0, sigma)));
+    assert_eq!(absorption(&loaded, "frosted"), None);
+    let (_, model, _) = samples::all().into_iter().find(|(name, ..)| *name == "glass").unwrap();
+    let scene = "mesh = [{ file = \"m.glb\", transform = [{ scale = 4 }, { translate = [0, 3, 0] }] }]";
+    let scaled = load_beside("s.toml", &[("s.toml", scene.as_bytes()), ("m.glb", &model.glb())]).unwrap();
+    let found = absorption(&scaled, "solid").unwrap();
+    assert!((found * 4.0 - Vec3::new(sigma, 0.0, sigma)).abs().max_element() < 1e-5, "{found}");
     let frosted = principled(&loaded, "frosted");
+    assert!(frosted.tints_each_passage);
     assert_eq!((frosted.spec_trans, frosted.roughness), (Share::Constant(1.0), Share::Constant(0.5)));
     assert_eq!(principled(&loaded, "veil").spec_trans, Share::Constant(0.0));
 }

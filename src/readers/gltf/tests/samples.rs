@@ -16,7 +16,7 @@ pub fn all() -> Vec<(&'static str, Model, &'static [&'static str])> {
         ("lights", lights(), &[]),
         ("camera", camera(), &["anything but the camera", "a second animation"]),
         ("alpha", alpha(), &[]),
-        ("glass", glass(), &["absorb", "sheets that transmit in part"]),
+        ("glass", glass(), &["sheets that transmit in part"]),
         ("layers", layers(), &["a quarter", "sheen", "coloured reflection", "more than ten times"]),
         ("unlit", unlit(), &["unlit"]),
         ("topology", topology(), &["points and lines"]),
