@@ -22,6 +22,8 @@ mod mesh;
 mod mitsuba;
 mod native;
 mod options;
+#[cfg(test)]
+mod picture_tests;
 mod plan;
 mod realise;
 #[cfg(test)]

@@ -5,7 +5,7 @@
 use crate::budget::{TriangleBudget, lacking};
 use crate::decode::{self, Channel, DecodedImage};
 use crate::draft::{Draft, DraftMesh};
-use crate::error::{Location, Log, SceneError};
+use crate::error::{Location, Log, SceneError, Warning};
 use crate::file::{fnv1a, read_file};
 use crate::mesh::{self, RawMesh};
 use crate::plan::{
@@ -31,7 +31,8 @@ enum Task<'a> {
 }
 
 enum Done {
-    Meshes(usize, Vec<DraftMesh>),
+    /// Meshes of a plan, and warnings about them.
+    Meshes(usize, Vec<DraftMesh>, Vec<Warning>),
     Texture(usize, DecodedImage),
     Environment(DecodedImage),
 }
@@ -44,6 +45,8 @@ struct ReadFiles {
     hashes: Vec<u64>,
     /// Meshes of each mesh plan.
     meshes: Vec<Vec<DraftMesh>>,
+    /// Warnings about each mesh plan.
+    remarks: Vec<Vec<Warning>>,
     /// Image of each texture plan.
     images: Vec<Option<DecodedImage>>,
     environment: Option<DecodedImage>,
@@ -52,9 +55,11 @@ struct ReadFiles {
 impl ScenePlan {
     /// Opens every file; returns the draft, and the hash over the bytes of all files.
     pub fn realise(self, log: &mut Log) -> Result<(Draft, u64), SceneError> {
-        let ReadFiles { sources, hashes, mut meshes, mut images, environment } = self.read_files()?;
+        let ReadFiles { sources, hashes, mut meshes, remarks, mut images, environment } =
+            self.read_files()?;
         let contents = self.contents;
         contents.place_meshes(&mut meshes, log)?;
+        remarks.into_iter().flatten().try_for_each(|remark| log.add(remark))?;
         contents.decode_embedded(&mut images)?;
         let textures = contents.textures.into_iter().zip(images).filter_map(|(t, p)| texture(t, p)).collect();
         let environment = match contents.environment {
@@ -91,6 +96,7 @@ impl ScenePlan {
             sources: self.sources.iter().map(|s| s.0.clone()).collect(),
             hashes: self.sources.iter().map(|s| s.1).collect(),
             meshes: vec![Vec::new(); self.contents.meshes.len()],
+            remarks: vec![Vec::new(); self.contents.meshes.len()],
             images: vec![None; self.contents.textures.len()],
             environment: None,
         };
@@ -112,7 +118,7 @@ impl ScenePlan {
 impl ReadFiles {
     fn take(&mut self, done: Done) {
         match done {
-            Done::Meshes(i, meshes) => self.meshes[i] = meshes,
+            Done::Meshes(i, meshes, remarks) => (self.meshes[i], self.remarks[i]) = (meshes, remarks),
             Done::Texture(i, image) => self.images[i] = Some(image),
             Done::Environment(image) => self.environment = Some(image),
         }
@@ -222,15 +228,18 @@ fn use_file(path: &Path, tasks: &[Task], budget: &TriangleBudget) -> Result<(u64
 fn perform(task: &Task, bytes: &[u8], path: &Path, budget: &TriangleBudget) -> Result<Done, SceneError> {
     Ok(match task {
         Task::Mesh(i, plan) => {
+            let mut remarks = Vec::new();
             let raw = match &plan.geometry {
                 MeshSource::Obj(_, selection) => mesh::obj::read(bytes, path, selection)?,
-                MeshSource::Ply(_) => mesh::ply::read(bytes, path)?,
-                MeshSource::Serialized(_, index) => mesh::serialized::read(bytes, *index, path)?,
+                MeshSource::Ply(_) => mesh::ply::read(bytes, path, &mut remarks)?,
+                MeshSource::Serialized(_, index) => {
+                    mesh::serialized::read(bytes, *index, path, &mut remarks)?
+                }
                 MeshSource::Ready(raw) => raw.clone(),
                 MeshSource::Shared(raw) => RawMesh::clone(raw),
             };
             budget.take(raw.triangles.len(), &plan.place)?;
-            Done::Meshes(*i, finish_mesh(plan, raw))
+            Done::Meshes(*i, finish_mesh(plan, raw), remarks)
         }
         Task::Texture(i, plan, channel) => {
             Done::Texture(*i, decode::decode(bytes, *channel, path, &plan.place)?)

@@ -9,6 +9,7 @@
 pub mod mtl;
 pub mod obj;
 pub mod ply;
+mod ply_statements;
 mod polygon;
 pub mod serialized;
 pub mod shapes;
