@@ -1,7 +1,7 @@
 //! Job files of batches: images and walks in TOML, each with the options of its command.
 //!
-//! An entry becomes the arguments of `walk` if the name of its file has a placeholder for a number and no single `frame`
-//! is given, else of `render`. So a job file may hold every option of these commands, with the same meaning.
+//! An entry becomes the arguments of `walk` if the name of its file has a placeholder for a number and no `frame` is
+//! given, else of `render`. So a job file may hold every option of these commands, with the same meaning.
 
 use super::args::{Cli, Command};
 use super::exit::Failure;

@@ -31,6 +31,8 @@ mod missing_tests;
 mod mitsuba;
 mod native;
 mod options;
+#[cfg(test)]
+mod picture_tests;
 mod plan;
 mod realise;
 #[cfg(test)]

@@ -276,8 +276,10 @@ fn perform(task: &Task, bytes: &[u8], path: &Path, budget: &TriangleBudget) -> R
             let mut remarks = Vec::new();
             let raw = match &plan.geometry {
                 MeshSource::Obj(_, selection) => mesh::obj::read(bytes, path, selection, &mut remarks)?,
-                MeshSource::Ply(_) => mesh::ply::read(bytes, path)?,
-                MeshSource::Serialized(_, index) => mesh::serialized::read(bytes, *index, path)?,
+                MeshSource::Ply(_) => mesh::ply::read(bytes, path, &mut remarks)?,
+                MeshSource::Serialized(_, index) => {
+                    mesh::serialized::read(bytes, *index, path, &mut remarks)?
+                }
                 MeshSource::Ready(raw) => raw.clone(),
                 MeshSource::Shared(raw) => RawMesh::clone(raw),
             };

@@ -8,8 +8,8 @@ use crate::oracle::{assert_means_within, mean};
 use glam::{DVec3, Vec2, Vec3};
 use lightsplat::math::Rgb;
 use lightsplat::scene::{
-    Attribute, AttributeId, AttributeValues, DeltaLight, DistantDisc, Emission, Environment, Filter, Material,
-    MaterialId, Mesh, Reflectance, Scene, Share, Texture, Wrap,
+    Attribute, AttributeId, AttributeValues, DeltaLight, DistantDisc, Emission, Environment, Filter,
+    Material, MaterialId, Mesh, Reflectance, Scene, Share, Texture, Wrap,
 };
 use std::f32::consts::PI;
 

@@ -55,7 +55,7 @@ impl<R: Read + Seek> ExrSource<R> {
         self.headers().iter().map(names).collect()
     }
 
-    /// Reads channels of a flat part at the largest level. Subsampled channels are interpolated to the size of the part.
+    /// Reads channels of a flat part at the largest level. Subsampled channels are interpolated to its full size.
     ///
     /// The caller checks first that the size of the part is plausible and fits into memory.
     ///

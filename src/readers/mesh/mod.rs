@@ -17,6 +17,7 @@ pub mod obj_references;
 mod obj_statements;
 pub mod ply;
 mod ply_attributes;
+mod ply_statements;
 mod polygon;
 pub mod serialized;
 pub mod shapes;

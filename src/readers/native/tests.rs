@@ -253,7 +253,10 @@ fn a_mesh_file_in_which_nothing_is_found_is_warned_of_and_an_error_under_strict(
         let mesh = format!("[[mesh]]\nfile = \"{name}\"\nmaterial = \"m\"\n");
         fs::write(&path, format!("{HEAD}{GREY}{mesh}{SKY}")).unwrap();
         let loaded = load(&path, &LoadOptions::default()).unwrap();
-        let [warning] = &loaded.warnings[..] else { panic!("{name}: {:?}", loaded.warnings) };
+        let [warning, more @ ..] = &loaded.warnings[..] else { panic!("{name}: no warning") };
+        // Strips are named besides.
+        assert_eq!(more.len(), usize::from(*name == "e.ply"), "{more:?}");
+        assert!(more.iter().all(|more| more.what.contains("tristrips")), "{more:?}");
         assert!(warning.severity == Severity::Warning && warning.what.contains(name), "{warning}");
         let strict = load(&path, &LoadOptions { strict: true, ..LoadOptions::default() });
         assert!(strict.unwrap_err().to_string().contains("s.toml:10:"));
