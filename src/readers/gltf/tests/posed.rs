@@ -3,10 +3,10 @@
 use super::model::Model;
 use serde_json::json;
 
-pub const IDENTITY: [f32; 16] = [1., 0., 0., 0., 0., 1., 0., 0., 0., 0., 1., 0., 0., 0., 0., 1.];
+const IDENTITY: [f32; 16] = [1., 0., 0., 0., 0., 1., 0., 0., 0., 0., 1., 0., 0., 0., 0., 1.];
 
 /// Returns the matrix of a translation, by columns.
-pub fn shifted(x: f32, y: f32, z: f32) -> [f32; 16] {
+fn shifted(x: f32, y: f32, z: f32) -> [f32; 16] {
     let mut matrix = IDENTITY;
     matrix[12..15].copy_from_slice(&[x, y, z]);
     matrix
