@@ -13,6 +13,7 @@ mod polygon;
 pub mod serialized;
 pub mod shapes;
 mod smooth;
+pub mod stl;
 
 pub(crate) use smooth::vertex_normals as smooth_normals;
 

@@ -193,7 +193,7 @@ fn a_scene_without_light_is_warned_of() {
         assert_eq!(loaded.warnings.len(), warnings, "{:?}", loaded.warnings);
         let warning = loaded.warnings.last().unwrap();
         assert!(
-            warning.what.contains("no light") && warning.fallback.contains("add an emitter"),
+            warning.what.contains("no light") && warning.fallback.contains("--env sky"),
             "{warning}"
         );
         assert!(load_with(&body, &[], true).unwrap_err().contains("strict"));
