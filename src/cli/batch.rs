@@ -7,6 +7,7 @@ use super::batch_file::{self, JobEntry};
 use super::course::RunSpan;
 use super::exit::{self, Failure};
 use super::job::RenderJob;
+use super::values::Loudness;
 use super::walk_job::WalkJob;
 use super::{batch_outputs, interrupt, opened, render, talk, threads, walk};
 use ::render::session::Opened;
@@ -19,7 +20,7 @@ use std::sync::Arc;
 
 /// Runs the command.
 pub fn run(args: BatchArgs) -> Result<(), Failure> {
-    talk::start(args.progress, "batch");
+    talk::start(args.progress, Loudness::Normal, "batch");
     let more: &[&str] = if args.resume { &["--resume"] } else { &[] };
     let mut entries = Vec::new();
     for path in &args.jobs {

@@ -14,7 +14,7 @@ pub fn run(args: DenoiseFileArgs) -> Result<(), Failure> {
     let input = &args.input;
     let output = args.output.clone().unwrap_or_else(|| input.with_extension("denoised.exr"));
     let png = args.png.file(&output);
-    check_outputs(&output, png.as_deref(), false)?;
+    check_outputs(Some(&output), png.as_deref(), false)?;
     Inputs::new([input]).check_apart([&output].into_iter().chain(&png).map(PathBuf::as_path))?;
     let mut file = ExrFile::read(input).map_err(Failure::input)?;
     if let Some(library) = file.metadata().text("denoised").filter(|library| *library != "false") {

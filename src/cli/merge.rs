@@ -22,7 +22,7 @@ const OWN: [&str; 3] = ["job", "render_seconds", "threads"];
 /// Runs the command.
 pub fn run(args: MergeArgs) -> Result<(), Failure> {
     let png = args.png.file(&args.output);
-    check_outputs(&args.output, png.as_deref(), false)?;
+    check_outputs(Some(&args.output), png.as_deref(), false)?;
     Inputs::new(&args.inputs).check_apart([&args.output].into_iter().chain(&png).map(PathBuf::as_path))?;
     let mut files = Vec::new();
     for path in &args.inputs {

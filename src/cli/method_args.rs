@@ -145,6 +145,7 @@ impl MethodSetting {
             help += &format!(" [default: {default}]");
         }
         let arg = Arg::new(spec.key).long(spec.option()).help(help);
+        let arg = if spec.key == "spp" { arg.short('s').visible_alias("samples") } else { arg };
         let arg = arg.help_heading(Some(spec.heading).filter(|heading| !heading.is_empty()));
         if spec.flag {
             let arg = arg.action(ArgAction::Set).num_args(0).default_missing_value("on");

@@ -19,6 +19,16 @@ pub struct PngArgs {
 }
 
 impl PngArgs {
+    /// Returns true if the arguments name a file.
+    pub fn names_a_file(&self) -> bool {
+        self.png.is_some()
+    }
+
+    /// Returns true if there is to be no tone-mapped image.
+    pub fn leaves_out(&self) -> bool {
+        self.no_png
+    }
+
     /// Returns the file of the tone-mapped image beside `exr`; `None` if there is to be none.
     pub fn file(&self, exr: &Path) -> Option<PathBuf> {
         if self.no_png {

@@ -26,7 +26,7 @@ use world::view::View;
 
 /// Runs the command.
 pub fn run(args: WalkArgs) -> Result<(), Failure> {
-    talk::start(args.picture.progress, "walk");
+    talk::start(args.picture.progress, args.picture.loudness(), "walk");
     let job = WalkJob::new(args)?;
     let control = Arc::new(Control::new());
     interrupt::cancel_on_signal(&control).context("cannot catch signals").map_err(Failure::render)?;
@@ -131,7 +131,7 @@ impl Frames<'_> {
             "frame",
             || json!({ "frame": number, "state": "start", "index": place, "count": count, "is_there": is_there }),
         );
-        let view = View::new(&session.cameras, &job.framing(number)).map_err(Failure::usage)?;
+        let view = View::new(&session.cameras, &job.framing(number, session)).map_err(Failure::usage)?;
         let work = || walk.frame(&view, control);
         let is_done =
             |frame: &Result<RenderedFrame, FrameError>| frame.as_ref().is_ok_and(|frame| frame.complete);
@@ -148,7 +148,7 @@ impl Frames<'_> {
             self.report.repeat();
         } else {
             self.say_once(&frame, number);
-            self.write(&mut frame, number, &chunk.keys[index], &view)?;
+            self.write(&mut frame, number, &chunk.keys[index], &view, &watch)?;
             frame.stats.add_time(Stage::Total, watch.elapsed());
             self.report.add(number, &frame)?;
         }
@@ -160,13 +160,14 @@ impl Frames<'_> {
         Ok(())
     }
 
-    /// Writes a frame and reports its files.
+    /// Writes a frame, on which `watch` has run since its start, and reports its files.
     fn write(
         &mut self,
         frame: &mut RenderedFrame,
         number: usize,
         key: &str,
         view: &View,
+        watch: &Stopwatch,
     ) -> Result<(), Failure> {
         let (exr, png) = self.job.files(number);
         let factor = self.factor(number, view)?;
@@ -181,7 +182,7 @@ impl Frames<'_> {
         frame.facts["scene_warnings"] = self.warnings.into();
         frame.facts["output"] = exr.to_string_lossy().into();
         frame.facts["png"] = png.map(|(path, _)| path.to_string_lossy()).into();
-        talk::wrote(&format!("frame {number}: {}", written.said), &written.files);
+        talk::wrote(&format!("frame {number}: {}", written.said(watch.elapsed())), &written.files);
         Ok(())
     }
 
