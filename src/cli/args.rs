@@ -2,14 +2,16 @@
 
 use super::bench_args::BenchArgs;
 use super::denoise_args::{DenoiseArgs, DenoiseFileArgs};
+use super::develop::DevelopArgs;
 use super::exit;
+use super::generate::GenerateArgs;
 use super::method_args::MethodArgs;
 use super::plan_args::{PlanArgs, Quality};
-use super::png_args::PngArgs;
+use super::png_args::{PngArgs, ToneArgs};
 use super::reading_args::ReadingArgs;
 use super::still_files::ImageFormat;
 use super::values::{Bytes, Crop, Loudness, ProgressMode, Resolution, counted, feature, q_scale};
-use base::film::Exposure;
+use super::version;
 use clap::{Arg, ArgGroup, Args, CommandFactory, FromArgMatches, Parser, Subcommand, ValueEnum};
 use render::session::Feature;
 use render::walk::{FileNames, FrameList, Q_SCALE, RetentionLimits};
@@ -34,6 +36,17 @@ impl Cli {
     /// # Errors
     /// If the arguments are wrong, or ask for help or the version.
     pub fn of(arguments: impl IntoIterator<Item = impl Into<OsString> + Clone>) -> Result<Cli, clap::Error> {
+        let arguments: Vec<OsString> = arguments.into_iter().map(Into::into).collect();
+        let mut command = Cli::definition();
+        if arguments.get(1).is_some_and(|first| first == "--version") {
+            command = command.long_version(version::text());
+        }
+        let matches = command.try_get_matches_from_mut(arguments)?;
+        Cli::from_arg_matches(&matches).map_err(|error| error.format(&mut command))
+    }
+
+    /// Returns the definition of all commands and options.
+    pub fn definition() -> clap::Command {
         let has_no_value = |arg: &Arg| {
             !arg.get_action().takes_values()
                 || arg.get_num_args().is_some_and(|range| range.max_values() == 0)
@@ -42,9 +55,7 @@ impl Cli {
             true => arg,
             false => arg.allow_negative_numbers(true),
         };
-        let mut command = Cli::command().mut_subcommands(|command| command.mut_args(negative));
-        let matches = command.try_get_matches_from_mut(arguments)?;
-        Cli::from_arg_matches(&matches).map_err(|error| error.format(&mut command))
+        Cli::command().mut_subcommands(|command| command.mut_args(negative))
     }
 }
 
@@ -61,6 +72,8 @@ pub enum Command {
     Info(InfoArgs),
     /// Denoise an existing image
     Denoise(DenoiseFileArgs),
+    /// Make a PNG of an OpenEXR image, with another exposure or view
+    Develop(DevelopArgs),
     /// Merge images of one view with different seeds into one with less noise
     Merge(MergeArgs),
     /// Put the frames of a walk on a contact sheet
@@ -69,6 +82,8 @@ pub enum Command {
     Compare(CompareArgs),
     /// Benchmark parts of the renderer
     Bench(BenchArgs),
+    /// Print a completion script or the man page
+    Generate(GenerateArgs),
 }
 
 /// Options of `render`.
@@ -202,11 +217,11 @@ pub struct WalkArgs {
     #[command(flatten)]
     pub picture: PictureArgs,
     /// Do not write tone-mapped images
-    #[arg(long, conflicts_with = "exposure")]
+    #[arg(long, conflicts_with_all = ["exposure", "view"])]
     pub no_png: bool,
-    /// Exposure of the PNG files in stops; `auto` maps the 90th percentile of luminance over the whole path to 0.8
-    #[arg(long, value_name = "auto|EV", default_value_t, allow_negative_numbers = true)]
-    pub exposure: Exposure,
+    /// Exposure and view of the PNG files.
+    #[command(flatten)]
+    pub tone: ToneArgs,
     /// Print counters and stage times to standard output: a table of the frames, or one JSON object per frame
     #[arg(long, value_enum, value_name = "FORMAT")]
     pub stats: Option<StatsFormat>,
@@ -219,6 +234,12 @@ pub struct BatchArgs {
     /// Job files (.toml), which list images and walks, each with the options of its command
     #[arg(required = true)]
     pub jobs: Vec<PathBuf>,
+    /// Print the number, the scene and the output of each entry, and render nothing
+    #[arg(long, conflicts_with = "only")]
+    pub list: bool,
+    /// Render only these entries, counted from 1 over all job files: 7, 1-10, or a list of such ranges
+    #[arg(long, value_name = "LIST")]
+    pub only: Option<FrameList>,
     /// Skip images and frames whose files are complete and come from the same scene, settings and program version
     #[arg(long)]
     pub resume: bool,

@@ -53,14 +53,15 @@ pub fn run(args: DenoiseFileArgs) -> Result<(), Failure> {
     }
     file.set("denoised", library.as_str());
     let mut said = format!("wrote {}", output.display());
-    let exposed = png.map(|path| (path, args.png.exposure.factor(&clean)));
-    if let Some((path, factor)) = &exposed {
-        file.set("png_exposure", f64::from(factor.log2()));
-        said += &format!(" and {} (exposure {:+.2} EV)", path.display(), factor.log2());
+    let exposed = png.map(|path| (path, args.png.tone.tone().look(&clean)));
+    if let Some((path, look)) = &exposed {
+        file.set("png_exposure", f64::from(look.stops()));
+        file.set("png_view", look.curve.name());
+        said += &format!(" and {} (exposure {:+.2} EV)", path.display(), look.stops());
     }
     file.write(&output).map_err(Failure::output)?;
-    if let Some((path, factor)) = &exposed {
-        write_png(path, &clean, *factor).map_err(Failure::output)?;
+    if let Some((path, look)) = &exposed {
+        write_png(path, &clean, *look).map_err(Failure::output)?;
     }
     let guided_by = if guided_by.is_empty() { "no layer".to_owned() } else { guided_by.join(" and ") };
     talk::note(&format!("denoised with {library}, guided by {guided_by}"));

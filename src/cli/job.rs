@@ -96,9 +96,9 @@ impl RenderJob {
 
     /// Returns the key of the image.
     pub fn key(&self, session: &Session) -> String {
-        let exposure = self.files.png.as_ref().map(|(_, exposure)| exposure.to_string());
+        let tone = self.files.png.as_ref().map(|(_, tone)| tone.to_string());
         let framing = format!("{:?}", self.framing(session));
-        job_key::of(session, &self.goal, json!([framing, exposure, self.reproducible]))
+        job_key::of(session, &self.goal, json!([framing, tone, self.reproducible]))
     }
 
     /// Returns frame, film size and crop.

@@ -129,7 +129,8 @@ mod tests {
 
     #[test]
     fn light_and_camera_reach_the_reader() {
-        let found = options("--env sky,10,20 --env-rotate 90 --look-from -1,2,3 --look-at 0,0,0 --fov 60 --up z");
+        let found =
+            options("--env sky,10,20 --env-rotate 90 --look-from -1,2,3 --look-at 0,0,0 --fov 60 --up z");
         let found = found.unwrap();
         assert_eq!(found.lighting.environment, Some(EnvironmentChoice::Sky([10.0, 20.0])));
         assert_eq!((found.lighting.rotation, found.up), (90.0, Some(UpAxis::Z)));

@@ -73,7 +73,7 @@ pub fn still(job: &RenderJob, opened: &Opened, span: RunSpan, control: &Control)
     let can_go_on = files.exr.is_some() && frame.film.layers.iter().any(|layer| layer.name == SAMPLES);
     let RenderedFrame { film, mut stats, mut facts, remarks, measured, complete, unverified, .. } = frame;
     say(&remarks);
-    let exposed = files.png.as_ref().map(|(path, exposure)| (path.as_path(), exposure.factor(&film.color)));
+    let exposed = files.png.as_ref().map(|(path, tone)| (path.as_path(), tone.look(&film.color)));
     let written = stats.time(Stage::Write, || picture::write(files.exr.as_deref(), exposed, film))?;
     job.files.deliver(&written.said(job.run.elapsed()), &written.files)?;
     say(&measured);

@@ -3,10 +3,9 @@
 use super::args::RenderArgs;
 use super::exit::Failure;
 use super::outputs::{self, check_name};
-use super::png_args::PngArgs;
 use super::{picture, talk};
 use anyhow::{Context, anyhow};
-use base::film::Exposure;
+use base::film::Tone;
 use clap::ValueEnum;
 use std::ffi::OsStr;
 use std::fs;
@@ -28,8 +27,8 @@ pub enum ImageFormat {
 pub struct StillFiles {
     /// OpenEXR file.
     pub exr: Option<PathBuf>,
-    /// PNG file and its exposure.
-    pub png: Option<(PathBuf, Exposure)>,
+    /// PNG file, with its exposure and view.
+    pub png: Option<(PathBuf, Tone)>,
     /// Folder that holds the file until it is copied to standard output.
     piped: Option<TempDir>,
 }
@@ -40,35 +39,40 @@ impl StillFiles {
     /// # Errors
     /// If a name has a wrong extension, or options exclude each other.
     pub fn new(args: &RenderArgs) -> Result<StillFiles, Failure> {
-        let PngArgs { exposure, .. } = args.png;
+        let tone = args.png.tone.tone();
         let Some(output) = &args.output else {
             let exr = Path::new(args.scene.file_stem().unwrap_or(OsStr::new("image"))).with_extension("exr");
-            let png = args.png.file(&exr).map(|path| (path, exposure));
+            let png = args.png.file(&exr).map(|path| (path, tone));
             return Ok(StillFiles { exr: Some(exr), png, piped: None });
         };
         let alone = |what: &str| match args.png.names_a_file() || args.png.leaves_out() {
-            true => Err(Failure::usage(anyhow!("{what} goes with neither --png nor --no-png; leave them out"))),
+            true => {
+                Err(Failure::usage(anyhow!("{what} goes with neither --png nor --no-png; leave them out")))
+            }
             false => Ok(()),
         };
         if output.as_os_str() == "-" {
             alone("-o -")?;
             if args.stats.is_some() {
-                return Err(Failure::usage(anyhow!("-o - and --stats both write to standard output; leave one out")));
+                return Err(Failure::usage(anyhow!(
+                    "-o - and --stats both write to standard output; leave one out"
+                )));
             }
-            let folder = tempfile::tempdir().context("cannot make a temporary folder").map_err(Failure::output)?;
+            let folder =
+                tempfile::tempdir().context("cannot make a temporary folder").map_err(Failure::output)?;
             let (exr, png) = match args.format {
                 ImageFormat::Exr => (Some(folder.path().join("image.exr")), None),
-                ImageFormat::Png => (None, Some((folder.path().join("image.png"), exposure))),
+                ImageFormat::Png => (None, Some((folder.path().join("image.png"), tone))),
             };
             return Ok(StillFiles { exr, png, piped: Some(folder) });
         }
         let extension = output.extension().map(|extension| extension.to_string_lossy().to_lowercase());
         if extension.as_deref() == Some("png") {
             alone("a PNG alone")?;
-            return Ok(StillFiles { exr: None, png: Some((output.clone(), exposure)), piped: None });
+            return Ok(StillFiles { exr: None, png: Some((output.clone(), tone)), piped: None });
         }
         check_name(output, "exr", "--output", "for OpenEXR, or in .png for a PNG alone")?;
-        let png = args.png.file(output).map(|path| (path, exposure));
+        let png = args.png.file(output).map(|path| (path, tone));
         Ok(StillFiles { exr: Some(output.clone()), png, piped: None })
     }
 
@@ -98,7 +102,7 @@ impl StillFiles {
         let place = |path: &PathBuf| if stays { picture::beside(path) } else { path.clone() };
         StillFiles {
             exr: self.exr.as_ref().map(place),
-            png: self.png.as_ref().map(|(path, exposure)| (place(path), *exposure)),
+            png: self.png.as_ref().map(|(path, tone)| (place(path), *tone)),
             piped: None,
         }
     }

@@ -162,7 +162,10 @@ mod tests {
     fn sizes_and_crops_are_parsed_and_refused() {
         let own = |text: &str| text.parse::<Resolution>().map(|size| size.of([960, 540]));
         assert_eq!((own("640x480"), own("1X1")), (Ok([640, 480]), Ok([1, 1])));
-        assert_eq!((own("480"), own("x1080"), own("50%")), (Ok([480, 270]), Ok([1920, 1080]), Ok([480, 270])));
+        assert_eq!(
+            (own("480"), own("x1080"), own("50%")),
+            (Ok([480, 270]), Ok([1920, 1080]), Ok([480, 270]))
+        );
         assert_eq!((own("1"), own("0.1%")), (Ok([1, 1]), Ok([1, 1])));
         for bad in ["", "0", "0x5", "5x0", "-1x5", "1x2x3", "9999999x1", "axb", "x", "%", "0%", "nan%"] {
             assert!(bad.parse::<Resolution>().is_err(), "{bad}");

@@ -7,7 +7,7 @@ use super::plan_args::PlanArgs;
 use super::values::{ProgressMode, Resolution};
 use super::{job_key, threads};
 use anyhow::anyhow;
-use base::film::Exposure;
+use base::film::Tone;
 use readers::LoadOptions;
 use render::session::{Goal, PlanGoal, Session};
 use render::walk::chunk::{self, FrameChunk, Run};
@@ -32,8 +32,8 @@ pub struct WalkJob {
     pub resume: bool,
     /// True if the files must depend on scene and settings alone.
     pub reproducible: bool,
-    /// Exposure of the PNG files; `None` if there are none.
-    pub exposure: Option<Exposure>,
+    /// Exposure and view of the PNG files; `None` if there are none.
+    pub tone: Option<Tone>,
     /// Method and features.
     pub goal: Goal,
     /// Limits of the records that stay between frames.
@@ -79,7 +79,7 @@ impl WalkJob {
             chunk: args.chunk,
             resume: args.picture.resume,
             reproducible: args.picture.reproducible,
-            exposure: (!args.no_png).then_some(args.exposure),
+            tone: (!args.no_png).then_some(args.tone.tone()),
             goal,
             limits: RetentionLimits {
                 idle_frames: args.idle_frames,
@@ -109,7 +109,7 @@ impl WalkJob {
     /// Returns the files of a frame: OpenEXR, and PNG if there is to be one.
     pub fn files(&self, frame: usize) -> (PathBuf, Option<PathBuf>) {
         let exr = self.names.of(frame);
-        let png = self.exposure.map(|_| exr.with_extension("png"));
+        let png = self.tone.map(|_| exr.with_extension("png"));
         (exr, png)
     }
 
@@ -157,7 +157,7 @@ impl WalkJob {
             &self.goal,
             json!([
                 format!("{:?}", self.film(session)),
-                self.exposure.map(|exposure| exposure.to_string()),
+                self.tone.map(|tone| tone.to_string()),
                 format!("{:?}", self.limits),
                 self.reproducible,
             ]),

@@ -172,7 +172,8 @@ pub enum SceneError {
 /// Returns what a file of an unknown format is, and how to get a scene from it.
 fn way_out(path: &Path) -> String {
     let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
-    let from_blender = "export glTF 2.0 (.glb) from Blender, with Include > Cameras and Punctual Lights ticked";
+    let from_blender =
+        "export glTF 2.0 (.glb) from Blender, with Include > Cameras and Punctual Lights ticked";
     let (what, remedy) = match extension.as_str() {
         "blend" => ("a file of Blender", from_blender.to_owned()),
         "fbx" | "dae" | "3ds" | "abc" | "x3d" | "wrl" => {
@@ -185,7 +186,9 @@ fn way_out(path: &Path) -> String {
         "ma" | "mb" | "max" | "c4d" | "hip" | "skp" | "3dm" => {
             ("a file of a modelling program", "export glTF 2.0 (.glb) from that program".to_owned())
         }
-        "step" | "stp" | "iges" | "igs" => ("a CAD model without triangles", "export STL or glTF 2.0".to_owned()),
+        "step" | "stp" | "iges" | "igs" => {
+            ("a CAD model without triangles", "export STL or glTF 2.0".to_owned())
+        }
         "exr" | "png" | "jpg" | "jpeg" | "hdr" => {
             ("an image, not a scene", "name a scene, and an image for its light with --env".to_owned())
         }

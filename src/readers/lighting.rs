@@ -74,13 +74,17 @@ impl FromStr for EnvironmentChoice {
         let numbers: Option<Vec<f64>> = text.split(',').map(|part| part.trim().parse().ok()).collect();
         let sky = text.strip_prefix("sky");
         if let Some(rest) = sky.filter(|rest| rest.is_empty() || rest.starts_with(',')) {
-            let angles: Option<Vec<f64>> = rest.split(',').skip(1).map(|part| part.trim().parse().ok()).collect();
+            let angles: Option<Vec<f64>> =
+                rest.split(',').skip(1).map(|part| part.trim().parse().ok()).collect();
             return match angles.as_deref() {
                 Some([]) => Ok(EnvironmentChoice::Sky(SUN)),
                 Some(&[azimuth, elevation]) if azimuth.is_finite() && (0.0..=90.0).contains(&elevation) => {
                     Ok(EnvironmentChoice::Sky([azimuth, elevation]))
                 }
-                _ => Err("expected sky, or sky,AZIMUTH,ELEVATION in degrees with an elevation from 0 to 90".into()),
+                _ => {
+                    Err("expected sky, or sky,AZIMUTH,ELEVATION in degrees with an elevation from 0 to 90"
+                        .into())
+                }
             };
         }
         let colour = match numbers.as_deref() {
@@ -168,7 +172,9 @@ fn has_lamp(contents: &Contents) -> bool {
             is_lamp(&mesh.emission)
                 || match &mesh.material {
                     MaterialPlan::One(_) => false,
-                    MaterialPlan::ByName(appearances, _) => appearances.values().any(|a| is_lamp(&a.emission)),
+                    MaterialPlan::ByName(appearances, _) => {
+                        appearances.values().any(|a| is_lamp(&a.emission))
+                    }
                 }
         })
 }

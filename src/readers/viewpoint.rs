@@ -38,7 +38,9 @@ impl Viewpoint {
     ) -> Result<(), SceneError> {
         if let Some(fov) = self.fov {
             if !(fov > FOV[0] && fov < FOV[1]) {
-                return Err(place.wrong(format!("--fov is {fov}"), "give more than 0 and less than 180 degrees"));
+                return Err(
+                    place.wrong(format!("--fov is {fov}"), "give more than 0 and less than 180 degrees")
+                );
             }
             let still = [&mut draft.shot.camera];
             for camera in still.into_iter().chain(&mut draft.shot.path) {
@@ -73,7 +75,15 @@ impl Viewpoint {
         let camera = &mut draft.shot.camera;
         let origin_or_own = origin.unwrap_or(camera.origin);
         let (near, far) = (0.0, f64::INFINITY);
-        *camera = DraftCamera { origin: origin_or_own, forward, right, up: right.cross(forward), near, far, ..*camera };
+        *camera = DraftCamera {
+            origin: origin_or_own,
+            forward,
+            right,
+            up: right.cross(forward),
+            near,
+            far,
+            ..*camera
+        };
         draft.shot.fits = origin.is_none();
         draft.shot.path.clear();
         Ok(())
@@ -110,7 +120,8 @@ mod tests {
         let camera = seen("", wide, None).unwrap().cameras.still;
         assert!((camera.forward - Vec3::X).length() < 1e-6 && (camera.tan_half_x - 1.0).abs() < 1e-6);
         let own = "camera = { origin = [10, 0, 5], target = [10, 0, 0] }";
-        let turned = seen(own, Viewpoint { at: Some(DVec3::new(10.0, 5.0, 5.0)), ..Viewpoint::default() }, None);
+        let turned =
+            seen(own, Viewpoint { at: Some(DVec3::new(10.0, 5.0, 5.0)), ..Viewpoint::default() }, None);
         let camera = turned.unwrap().cameras.still;
         assert!((camera.forward - Vec3::Y).length() < 1e-6 && camera.right.is_finite());
     }

@@ -13,7 +13,8 @@ const STL: &str = "solid a\nfacet normal 0 0 1\nouter loop\nvertex -1 -1 0\nvert
 
 /// A square that faces +z, of radiance `emissive`, as glTF with embedded data.
 fn gltf(emissive: f32) -> String {
-    let positions = [-1.0f32, -1.0, 0.0, 1.0, -1.0, 0.0, 1.0, 1.0, 0.0, -1.0, -1.0, 0.0, 1.0, 1.0, 0.0, -1.0, 1.0, 0.0];
+    let positions =
+        [-1.0f32, -1.0, 0.0, 1.0, -1.0, 0.0, 1.0, 1.0, 0.0, -1.0, -1.0, 0.0, 1.0, 1.0, 0.0, -1.0, 1.0, 0.0];
     let bytes: Vec<u8> = positions.iter().flat_map(|number| number.to_le_bytes()).collect();
     use base64::Engine;
     let data = base64::engine::general_purpose::STANDARD.encode(bytes);
@@ -38,7 +39,8 @@ fn sandbox() -> Sandbox {
 
 /// Renders a file by few paths, with further words.
 fn render(sandbox: &Sandbox, file: &str, more: &[&str]) -> Finished {
-    sandbox.run(&[&["render", file, "--method", "path", "-s", "16", "--no-denoise", "-r", "32"], more].concat())
+    sandbox
+        .run(&[&["render", file, "--method", "path", "-s", "16", "--no-denoise", "-r", "32"], more].concat())
 }
 
 fn mean(image: &Image) -> f32 {
@@ -55,7 +57,10 @@ fn a_model_without_light_gets_a_sky_and_a_name_from_its_file() {
     let sandbox = sandbox();
     for (file, exr) in [("corner.obj", "corner.exr"), ("plate.stl", "plate.exr"), ("dark.gltf", "dark.exr")] {
         let stderr = render(&sandbox, file, &[]).expect(0).stderr;
-        assert!(stderr.contains("the file has no light") && stderr.contains("--no-default-light"), "{stderr}");
+        assert!(
+            stderr.contains("the file has no light") && stderr.contains("--no-default-light"),
+            "{stderr}"
+        );
         assert!(stderr.contains(&format!("wrote {exr} and ")) && stderr.contains("(32x18, "), "{stderr}");
         let image = read_exr(&sandbox.path(exr)).unwrap();
         // Level ground has the irradiance π, so a diffuse surface of .5 to 1 has a radiance of that order.
@@ -113,10 +118,12 @@ fn files_are_what_their_names_say() {
     let sandbox = sandbox();
     render(&sandbox, "corner.obj", &["-o", "new/only.png"]).expect(0);
     assert!(sandbox.path("new/only.png").exists() && !sandbox.path("new/only.exr").exists());
-    let piped = sandbox.command(&["render", "corner.obj", "-s", "1", "-r", "16", "--method", "path", "-o", "-"]);
+    let piped =
+        sandbox.command(&["render", "corner.obj", "-s", "1", "-r", "16", "--method", "path", "-o", "-"]);
     let piped = { piped }.output().unwrap();
     assert!(piped.status.success() && piped.stdout.starts_with(b"\x89PNG"));
-    let mut exr = sandbox.command(&["render", "corner.obj", "-s", "1", "-r", "16", "-o", "-", "--format", "exr"]);
+    let mut exr =
+        sandbox.command(&["render", "corner.obj", "-s", "1", "-r", "16", "-o", "-", "--format", "exr"]);
     let exr = exr.output().unwrap();
     fs::write(sandbox.path("piped.exr"), exr.stdout).unwrap();
     assert_eq!(ExrFile::read(&sandbox.path("piped.exr")).unwrap().window().width, 16);
@@ -134,8 +141,43 @@ fn messages_are_as_many_as_asked_for() {
     assert_eq!(render(&sandbox, "corner.obj", &["-q"]).expect(0).stderr, "");
     let stderr = render(&sandbox, "corner.obj", &["-v"]).expect(0).stderr;
     assert!(stderr.contains(" s: render"), "{stderr}");
-    for (file, way_out) in [("a.blend", "Punctual Lights"), ("a.usdz", "Blender"), ("a.pbrt", "Mitsuba"), ("a.x", ".glb")] {
+    for (file, way_out) in
+        [("a.blend", "Punctual Lights"), ("a.usdz", "Blender"), ("a.pbrt", "Mitsuba"), ("a.x", ".glb")]
+    {
         let stderr = render(&sandbox, file, &[]).expect(3).stderr;
         assert!(stderr.contains(way_out), "{stderr}");
     }
+}
+
+#[test]
+fn an_image_is_developed_again_with_another_exposure_and_view() {
+    let sandbox = sandbox();
+    render(&sandbox, "corner.obj", &["-o", "a.exr", "--exposure", "0"]).expect(0);
+    let pixels = |name: &str| image::open(sandbox.path(name)).unwrap().into_rgb8().into_raw();
+    let first = pixels("a.png");
+    let developed = |more: &[&str]| {
+        sandbox.run(&[&["develop", "a.exr", "-o", "b.png"], more].concat()).expect(0);
+        pixels("b.png")
+    };
+    assert!(developed(&["--exposure", "0"]) == first);
+    let sum = |pixels: &[u8]| pixels.iter().map(|&value| u64::from(value)).sum::<u64>();
+    assert!(sum(&developed(&["--exposure", "-2"])) < sum(&first));
+    for view in ["standard", "agx", "filmic"] {
+        assert!(developed(&["--exposure", "0", "--view", view]) != first, "{view}");
+    }
+    let stderr = sandbox.run(&["develop", "a.exr", "-o", "b.exr"]).expect(2).stderr;
+    assert!(stderr.contains(".png"), "{stderr}");
+}
+
+#[test]
+fn the_version_names_libraries_and_instruction_sets() {
+    let sandbox = sandbox();
+    let said = sandbox.run(&["--version"]).expect(0).stdout;
+    assert!(
+        said.starts_with("lightsplat ") && said.contains("Embree: ") && said.contains("compiled for: "),
+        "{said}"
+    );
+    assert_eq!(sandbox.run(&["-V"]).expect(0).stdout.lines().count(), 1);
+    let bash = sandbox.run(&["generate", "bash"]).expect(0).stdout;
+    assert!(bash.contains("--env-rotate"));
 }

@@ -64,7 +64,8 @@ impl Builder {
             match words.next().map(str::to_ascii_lowercase).as_deref() {
                 Some("vertex") => {
                     let numbers: Vec<f32> = words.map_while(|word| word.parse().ok()).collect();
-                    let corner = numbers.try_into().map_err(|_| wrong("a vertex has not three numbers".into()))?;
+                    let corner =
+                        numbers.try_into().map_err(|_| wrong("a vertex has not three numbers".into()))?;
                     corners.push(corner);
                 }
                 Some("endloop") => match corners[..] {
@@ -138,7 +139,9 @@ mod tests {
 
     #[test]
     fn damaged_texts_are_errors_with_their_line() {
-        for (from, to, line) in [("vertex 1 0 0", "vertex 1 0", 5), ("vertex 0 1 0\nendloop", "endloop", 6), ("facet", "face", 2)] {
+        for (from, to, line) in
+            [("vertex 1 0 0", "vertex 1 0", 5), ("vertex 0 1 0\nendloop", "endloop", 6), ("facet", "face", 2)]
+        {
             let error = read(TEXT.replacen(from, to, 1).as_bytes()).unwrap_err();
             assert!(error.starts_with(&format!("m.stl:{line}: ")), "{error}");
         }

@@ -160,7 +160,11 @@ impl SceneBuilder<'_> {
     }
 
     /// Reads the materials of the OBJ's MTL files. They are assigned by name.
-    pub(super) fn mtl_materials(&mut self, path: &Path, place: &Location) -> Result<MaterialPlan, SceneError> {
+    pub(super) fn mtl_materials(
+        &mut self,
+        path: &Path,
+        place: &Location,
+    ) -> Result<MaterialPlan, SceneError> {
         let names = self.read_mtl(path, place)?;
         let other = self.default_material(place);
         Ok(MaterialPlan::ByName(names, other))

@@ -19,10 +19,9 @@ pub(crate) fn read(path: &Path, extension: &str, log: &mut Log) -> Result<SceneP
     let mut builder = SceneBuilder::new(SourceText { path, text: "" }, log, &text)?;
     let place = Location::file(path);
     let (geometry, material) = match extension {
-        "obj" => (
-            MeshSource::Obj(path.to_owned(), PartSelection::default()),
-            builder.mtl_materials(path, &place)?,
-        ),
+        "obj" => {
+            (MeshSource::Obj(path.to_owned(), PartSelection::default()), builder.mtl_materials(path, &place)?)
+        }
         "stl" => (MeshSource::Stl(path.to_owned()), MaterialPlan::One(builder.default_material(&place))),
         _ => (MeshSource::Ply(path.to_owned()), MaterialPlan::One(builder.default_material(&place))),
     };
