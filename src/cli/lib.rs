@@ -19,6 +19,8 @@ mod course;
 mod denoise;
 mod denoise_args;
 mod develop;
+#[cfg(test)]
+mod doc_links;
 mod exit;
 mod files;
 mod generate;
