@@ -7,8 +7,7 @@ use super::args::{Cli, Command};
 use super::exit::Failure;
 use anyhow::{Context, anyhow};
 use clap::error::{ContextKind, ContextValue};
-use readers::LoadOptions;
-use readers::read_regular;
+use readers::{EnvironmentChoice, LoadOptions, read_regular};
 use render::walk::FileNames;
 use serde::Deserialize;
 use std::collections::BTreeMap;
@@ -23,7 +22,7 @@ use toml::{Spanned, Table, Value};
 const OF_THE_BATCH: [&str; 2] = ["threads", "progress"];
 
 /// Options that name a file.
-const FILES: [&str; 1] = ["png"];
+const FILES: [&str; 2] = ["png", "env"];
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -160,7 +159,7 @@ impl JobEntry {
                 return Err(self.wrong(name, &remedy));
             }
             match value {
-                Value::String(file) if FILES.contains(&name.as_str()) => {
+                Value::String(file) if FILES.contains(&name.as_str()) && is_file(name, file) => {
                     let mut argument = OsString::from(format!("--{name}="));
                     argument.push(folder.join(file));
                     arguments.push(argument);
@@ -181,6 +180,11 @@ impl JobEntry {
         };
         Ok(self)
     }
+}
+
+/// Returns true if the value of an option that may name a file does.
+fn is_file(name: &str, value: &str) -> bool {
+    name != "env" || matches!(value.parse(), Ok(EnvironmentChoice::Map(_)))
 }
 
 /// Returns the arguments of an option.
