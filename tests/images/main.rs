@@ -25,6 +25,7 @@ mod glossy;
 mod lightcuts;
 mod many_lights;
 mod mitsuba;
+mod models;
 mod occluder_cache;
 mod path;
 mod photon_cache;

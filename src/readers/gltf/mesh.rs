@@ -29,9 +29,6 @@ pub(super) fn read(
         }
         Checked::Invalid => return Err(document.wrong(format!("{what}: its mode is unknown"))),
     };
-    if attribute(Semantic::Colors(0)).is_some() {
-        report.lacks("colours of vertices are not modelled", "their factor is left out", what);
-    }
     let Some(positions) = attribute(Semantic::Positions) else {
         return Err(document.wrong(format!("{what} has no positions")));
     };

@@ -2,6 +2,8 @@
 
 #[path = "../../../src/readers/gltf/tests/model.rs"]
 mod model;
+#[path = "../../../src/readers/gltf/tests/packed.rs"]
+mod packed;
 #[path = "../../../src/readers/gltf/tests/samples.rs"]
 mod samples;
 

@@ -1,5 +1,7 @@
+mod compressed;
 mod container;
 mod model;
+mod packed;
 mod samples;
 mod skin;
 mod slow_damage;
