@@ -218,7 +218,7 @@ fn scalar(value: &Value) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::job::RenderJob;
+    use crate::still_files::StillFiles;
     use render::method::Method;
 
     fn entries(text: &str) -> Result<Vec<JobEntry>, Failure> {
@@ -251,8 +251,9 @@ mod tests {
         )
         .unwrap();
         let Command::Render(frame) = found[2].command().unwrap() else { panic!("{found:?}") };
-        let (exr, png) = RenderJob::files(&frame).unwrap();
-        assert!(exr.ends_with("out/still.03.exr") && png.unwrap().ends_with("out/still.03.png"));
+        let files = StillFiles::new(&frame).unwrap();
+        let png = files.png.unwrap().0;
+        assert!(files.exr.unwrap().ends_with("out/still.03.exr") && png.ends_with("out/still.03.png"));
         let Command::Render(still) = found[0].command().unwrap() else { panic!("{found:?}") };
         assert_eq!(still.method.method().unwrap().spp(), 2);
         let Method::Cache(settings) = still.method.method().unwrap() else { panic!("{still:?}") };

@@ -128,5 +128,6 @@ impl StillFiles {
 /// Returns a path with the number of the frame where it has a place for it; `option` names it in messages.
 fn numbered(option: &str, path: &Path, frame: Option<NonZeroUsize>) -> Result<PathBuf, Failure> {
     let frame = frame.map(NonZeroUsize::get);
-    names::numbered(path, frame).map_err(|what| Failure::usage(anyhow!("{option} {}: {what}", path.display())))
+    names::numbered(path, frame)
+        .map_err(|what| Failure::usage(anyhow!("{option} {}: {what}", path.display())))
 }

@@ -20,13 +20,19 @@ pub(crate) fn read(path: &Path, extension: &str, log: &mut Log) -> Result<SceneP
     let mut builder = SceneBuilder::new(SourceText { path, text: "" }, log, &text)?;
     let place = Location::file(path);
     let (geometry, material) = match extension {
-        "obj" => {
-            (MeshSource::Obj(path.to_owned(), PartSelection::default()), builder.mtl_materials(path, &place, &DMat4::IDENTITY)?)
+        "obj" => (
+            MeshSource::Obj(path.to_owned(), PartSelection::default()),
+            builder.mtl_materials(path, &place, &DMat4::IDENTITY)?,
+        ),
+        "stl" => {
+            (MeshSource::Stl(path.to_owned()), MaterialPlan::One(builder.default_material(false, &place)))
         }
-        "stl" => (MeshSource::Stl(path.to_owned()), MaterialPlan::One(builder.default_material(false, &place))),
         _ => {
             let has_colours = ply::has_colours(&read_file(path, &place)?);
-            (MeshSource::Ply(path.to_owned()), MaterialPlan::One(builder.default_material(has_colours, &place)))
+            (
+                MeshSource::Ply(path.to_owned()),
+                MaterialPlan::One(builder.default_material(has_colours, &place)),
+            )
         }
     };
     let placement = Placement {
