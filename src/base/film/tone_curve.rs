@@ -56,8 +56,8 @@ impl ToneCurve {
 
 /// Returns the colour without negative and infinite channels and NaN.
 fn finite(color: Rgb) -> Rgb {
-    // `max` returns the other operand for NaN.
-    Rgb::from(color.to_array().map(|channel| channel.max(0.0).min(1e30)))
+    let of_channel = |channel: f32| if channel.is_nan() { 0.0 } else { channel.clamp(0.0, 1e30) };
+    Rgb::from(color.to_array().map(of_channel))
 }
 
 /// Returns the linear display colour of Khronos PBR Neutral.
@@ -84,12 +84,12 @@ fn agx(color: Rgb) -> Rgb {
     const INSET: Mat3 = Mat3::from_cols(
         Vec3::new(0.842_479_06, 0.042_328_24, 0.042_375_65),
         Vec3::new(0.078_433_6, 0.878_468_64, 0.078_433_6),
-        Vec3::new(0.079_223_745, 0.079_166_13, 0.879_142_97),
+        Vec3::new(0.079_223_745, 0.079_166_13, 0.879_143),
     );
     const OUTSET: Mat3 = Mat3::from_cols(
         Vec3::new(1.196_879, -0.052_896_85, -0.052_971_635),
         Vec3::new(-0.098_020_88, 1.151_903_1, -0.098_043_45),
-        Vec3::new(-0.099_029_744, -0.098_961_18, 1.151_073_7),
+        Vec3::new(-0.099_029_74, -0.098_961_18, 1.151_073_7),
     );
     // Stops of black and white relative to 1.
     const STOPS: [f32; 2] = [-12.473_93, 4.026_069];
