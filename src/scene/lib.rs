@@ -13,6 +13,7 @@ mod mesh;
 mod parameter;
 mod pixel_filter;
 mod principled;
+mod projector;
 mod relief;
 pub mod requirements;
 pub mod texture;
@@ -21,12 +22,13 @@ use glam::DVec3;
 use std::path::PathBuf;
 
 pub use camera::{Camera, Cameras, MAX_FRAMES, MAX_SIDE, Projection};
-pub use light::{DeltaLight, DistantDisc, Environment, EnvironmentMap};
+pub use light::{DeltaLight, DistantDisc, Environment, EnvironmentMap, SpotImage};
 pub use material::{Blend, Coat, Distribution, Fresnel, Lobe, Material, MaterialId};
 pub use mesh::{Emission, Mesh};
 pub use parameter::{Parameter, Reflectance, Roughness, Share};
 pub use pixel_filter::PixelFilter;
 pub use principled::{Principled, eta_of_specular};
+pub use projector::{FovAxis, Projector};
 pub use relief::Relief;
 pub use requirements::Requirements;
 pub use texture::{Filter, Texels, Texture, TextureId, Textures, Wrap};
@@ -53,7 +55,7 @@ pub struct Scene {
     pub materials: Vec<Material>,
     /// Textures, indexed by [`TextureId`].
     pub textures: Textures,
-    /// Point, spot and directional lights.
+    /// Point, spot and directional lights, and projectors.
     pub lights: Vec<DeltaLight>,
     /// Light from infinitely far, in all directions.
     pub environment: Option<Environment>,

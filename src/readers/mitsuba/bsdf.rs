@@ -65,22 +65,16 @@ impl Converter<'_> {
                 diffuse(name, self.reflectance(bsdf, parameter, 0.5)?)
             }
             "roughdiffuse" => {
-                bsdf.ignore(&["alpha", "use_fast_approx"]);
-                self.log.warn(&bsdf.place, "a rough diffuse surface is not modelled", "it is Lambertian")?;
+                let what = "the bsdf \"roughdiffuse\" is not modelled";
+                self.log.warn(&bsdf.place, what, "it is Lambertian")?;
                 diffuse(name, self.reflectance(bsdf, "reflectance", 0.5)?)
             }
-            "difftrans" => {
-                self.log.warn(
-                    &bsdf.place,
-                    "diffuse transmission is not modelled",
-                    "the surface reflects it",
-                )?;
-                diffuse(name, self.reflectance(bsdf, "transmittance", 0.5)?)
-            }
+            "difftrans" => self.diffuse_transmitter(bsdf, name)?,
             "plastic" | "roughplastic" => self.plastic(bsdf, name)?,
             "conductor" | "roughconductor" => self.conductor(bsdf, name)?,
             "dielectric" | "thindielectric" | "roughdielectric" => self.dielectric(bsdf, name)?,
             "principled" => self.principled(bsdf, name)?,
+            "principledthin" => self.principled_thin(bsdf, name)?,
             "phong" | "ward" => self.classic_glossy(bsdf, name)?,
             "null" => {
                 let white = Reflectance::Constant(Rgb::ONE);
@@ -179,7 +173,7 @@ impl Converter<'_> {
         let named = if normals { self.document.named(bsdf, "normalmap")? } else { None };
         let texture = match named {
             Some(texture) => Some(texture),
-            None => self.tagged(bsdf, "texture")?.into_iter().next(),
+            None => self.only(bsdf, "texture")?,
         };
         let scale = bsdf.float("scale")?.unwrap_or(1.0) as f32;
         let relief = match texture.map(|texture| self.texture(&texture, 0)).transpose()? {
@@ -242,14 +236,10 @@ impl Converter<'_> {
     }
 
     fn nested(&mut self, bsdf: &Object, depth: u32) -> Result<Material, SceneError> {
-        let nested = self.tagged(bsdf, "bsdf")?;
-        let Some(first) = nested.first() else {
+        let Some(first) = self.only(bsdf, "bsdf")? else {
             let what = format!("the bsdf \"{}\" holds no other", bsdf.plugin);
             return Err(bsdf.place.wrong(what, "nest a <bsdf> or a <ref> to one"));
         };
-        if let (Some(second), "twosided") = (nested.get(1), bsdf.plugin.as_str()) {
-            self.log.warn(&second.place, "different sides are not modelled", "the first bsdf is on both")?;
-        }
-        self.material(first, depth + 1)
+        self.material(&first, depth + 1)
     }
 }

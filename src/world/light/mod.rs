@@ -11,6 +11,10 @@ mod direct;
 mod distribution;
 mod emitters;
 mod environment;
+mod falloff;
+mod image;
+#[cfg(test)]
+mod image_tests;
 mod learned;
 mod packet;
 mod receivers;
@@ -22,11 +26,13 @@ mod tree;
 mod triangles;
 
 pub use area::{AreaLight, AreaPoint, emitted};
-pub use delta::{delta_irradiance, delta_power, spot_falloff};
+pub use delta::DeltaEmitter;
 pub use direct::{DirectSample, DirectSamples16};
 pub use distribution::DiscreteDistribution;
 pub use emitters::Emitters;
 pub use environment::{EnvironmentLight, EnvironmentSample, LearnedSky, SkyObservations};
+pub use falloff::spot_falloff;
+pub use image::ImageLight;
 pub use learned::Learned;
 pub use receivers::Receivers16;
 pub use regions::Regions;
