@@ -3,7 +3,9 @@
 
 use super::*;
 use crate::mitsuba::statements::TABLES;
-use crate::statements::{Fate, assert_page_lists};
+use crate::statements::{Fate, Statement, assert_page_lists};
+use rayon::prelude::*;
+use std::path::Path;
 
 /// Files beside every scene.
 const FILES: [(&str, &str); 4] = [
@@ -25,7 +27,7 @@ const FILES: [(&str, &str); 4] = [
 ];
 
 /// Images beside every scene: name and texels of a row.
-fn write_images(folder: &std::path::Path) {
+fn write_images(folder: &Path) {
     for (name, texels) in [("a.png", [0u8, 60, 200, 255]), ("b.png", [9, 80, 20, 5])] {
         image::GrayImage::from_raw(2, 2, texels.to_vec()).unwrap().save(folder.join(name)).unwrap();
     }
@@ -198,13 +200,56 @@ fn scene(tag: &str, plugin: &str, inside: &str) -> String {
 }
 
 /// Scene and cameras as text, and the texts of warnings; the error if there is one.
-fn outcome(folder: &std::path::Path, text: &str) -> Result<(String, Vec<String>), String> {
-    let path = folder.join("s.xml");
-    fs::write(&path, text).unwrap();
-    let loaded = load(&path, &LoadOptions::default()).map_err(|error| error.to_string())?;
+fn outcome(path: &Path, text: &str) -> Result<(String, Vec<String>), String> {
+    fs::write(path, text).unwrap();
+    let loaded = load(path, &LoadOptions::default()).map_err(|error| error.to_string())?;
     let such = loaded.warnings.iter().filter(|warning| warning.severity == Severity::Warning);
     let warnings = such.map(|warning| warning.to_string()).collect();
     Ok((format!("{:?} {:?}", loaded.scene, loaded.cameras), warnings))
+}
+
+/// Says why a row of the table for `tag` is wrong; `None` if it is right. `path` is a scene beside the files.
+fn problem(path: &Path, tag: &str, row: &Statement) -> Option<String> {
+    let (plugin, parameter) = match row.name.split_once(": ") {
+        Some((plugin, parameter)) => (plugin, Some(parameter)),
+        None => (row.name, None),
+    };
+    let companion = parameter.map_or("", |parameter| companion(plugin, parameter));
+    let base = outcome(path, &scene(tag, plugin, companion));
+    let Some(parameter) = parameter else {
+        let is_right = match (&base, row.fate) {
+            (Err(_), fate) => fate == Fate::Refused,
+            (Ok((_, warnings)), Fate::Named) => warnings.iter().any(|text| text.contains(plugin)),
+            (Ok((_, warnings)), fate) => fate != Fate::Refused && warnings.is_empty(),
+        };
+        return (!is_right).then(|| format!("{tag} {}: {:?}", row.name, base.map(|(_, warnings)| warnings)));
+    };
+    let (before, known) = match base {
+        Ok(base) => base,
+        Err(error) => return Some(format!("{tag} {}: {error}", row.name)),
+    };
+    let of_plugin = format!("the {tag} \"{plugin}\" is not modelled");
+    let is_new = |warning: &String| !known.contains(warning) && !warning.contains(&of_plugin);
+    // Whether the scene changes, and new warnings, for the values that are accepted.
+    let texts = values(parameter);
+    let mut outcomes = texts
+        .iter()
+        .filter_map(|value| outcome(path, &scene(tag, plugin, &format!("{companion}{value}"))).ok())
+        .map(|(after, warnings)| (after != before, warnings.into_iter().filter(is_new).count()));
+    let is_right = match row.fate {
+        Fate::Read => outcomes.any(|outcome| outcome == (true, 0)),
+        Fate::NoEffect => {
+            let silent: Vec<bool> =
+                outcomes.filter(|(_, warnings)| *warnings == 0).map(|(changes, _)| changes).collect();
+            !silent.is_empty() && !silent.contains(&true)
+        }
+        Fate::Named => {
+            let all: Vec<(bool, usize)> = outcomes.collect();
+            all.iter().any(|(_, warnings)| *warnings > 0) && !all.contains(&(true, 0))
+        }
+        Fate::Refused => outcomes.next().is_none(),
+    };
+    (!is_right).then(|| format!("{tag} {}: is not {:?}", row.name, row.fate))
 }
 
 #[test]
@@ -212,60 +257,14 @@ fn statements_become_what_their_tables_say() {
     let folder = tempfile::tempdir().unwrap();
     FILES.iter().for_each(|(name, text)| fs::write(folder.path().join(name), text).unwrap());
     write_images(folder.path());
-    let outcome = |text: &str| outcome(folder.path(), text);
-    let mut wrong = Vec::new();
-    for (_, tag, table) in TABLES.iter().filter(|(_, tag, _)| !tag.is_empty()) {
-        for row in *table {
-            let (plugin, parameter) = match row.name.split_once(": ") {
-                Some((plugin, parameter)) => (plugin, Some(parameter)),
-                None => (row.name, None),
-            };
-            if plugin == "serialized" {
-                continue; // Files of this format are binary; the tests of meshes read one.
-            }
-            let companion = parameter.map_or("", |parameter| companion(plugin, parameter));
-            let base = outcome(&scene(tag, plugin, companion));
-            let Some(parameter) = parameter else {
-                let is_right = match (&base, row.fate) {
-                    (Err(_), fate) => fate == Fate::Refused,
-                    (Ok((_, warnings)), Fate::Named) => warnings.iter().any(|text| text.contains(plugin)),
-                    (Ok((_, warnings)), fate) => fate != Fate::Refused && warnings.is_empty(),
-                };
-                if !is_right {
-                    wrong.push(format!("{tag} {}: {:?}", row.name, base.map(|(_, warnings)| warnings)));
-                }
-                continue;
-            };
-            let Ok((before, known)) = base else {
-                wrong.push(format!("{tag} {}: {base:?}", row.name));
-                continue;
-            };
-            let of_plugin = format!("the {tag} \"{plugin}\" is not modelled");
-            let is_new = |warning: &String| !known.contains(warning) && !warning.contains(&of_plugin);
-            // Whether the scene changes, and new warnings, for the values that are accepted.
-            let texts = values(parameter);
-            let mut outcomes = texts
-                .iter()
-                .filter_map(|value| outcome(&scene(tag, plugin, &format!("{companion}{value}"))).ok())
-                .map(|(after, warnings)| (after != before, warnings.into_iter().filter(is_new).count()));
-            let is_right = match row.fate {
-                Fate::Read => outcomes.any(|outcome| outcome == (true, 0)),
-                Fate::NoEffect => {
-                    let silent: Vec<bool> =
-                        outcomes.filter(|(_, warnings)| *warnings == 0).map(|(changes, _)| changes).collect();
-                    !silent.is_empty() && !silent.contains(&true)
-                }
-                Fate::Named => {
-                    let all: Vec<(bool, usize)> = outcomes.collect();
-                    all.iter().any(|(_, warnings)| *warnings > 0) && !all.contains(&(true, 0))
-                }
-                Fate::Refused => outcomes.next().is_none(),
-            };
-            if !is_right {
-                wrong.push(format!("{tag} {}: is not {:?}", row.name, row.fate));
-            }
-        }
-    }
+    let of_plugins = TABLES.iter().filter(|(_, tag, _)| !tag.is_empty());
+    let rows = of_plugins.flat_map(|(_, tag, table)| table.iter().map(move |row| (*tag, row)));
+    // Files of the format `serialized` are binary; the tests of meshes read one.
+    let rows: Vec<(&str, &Statement)> = rows.filter(|(_, row)| !row.name.starts_with("serialized")).collect();
+    let check = |(number, (tag, row)): (usize, &(&str, &Statement))| {
+        problem(&folder.path().join(format!("{number}.xml")), tag, row)
+    };
+    let wrong: Vec<String> = rows.par_iter().enumerate().filter_map(check).collect();
     assert!(wrong.is_empty(), "{} rows:\n{}", wrong.len(), wrong.join("\n"));
 }
 
