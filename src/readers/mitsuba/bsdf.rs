@@ -176,6 +176,7 @@ impl Converter<'_> {
             None => self.only(bsdf, "texture")?,
         };
         let scale = bsdf.float("scale")?.unwrap_or(1.0) as f32;
+        self.name_relief_rules(bsdf)?;
         let relief = match texture.map(|texture| self.texture(&texture, 0)).transpose()? {
             Some(Reflectance::Textured { texture, .. }) if normals => {
                 Some(Relief::Normals { texture, strength: 1.0, y_along_v: false })
@@ -193,6 +194,27 @@ impl Converter<'_> {
             )?;
         }
         Ok(Material { relief: relief.or(nested.relief), ..nested })
+    }
+
+    /// Names two rules for normals that lean away from the viewer. Mitsuba 3 applies them unless they are off.
+    fn name_relief_rules(&mut self, bsdf: &Object) -> Result<(), SceneError> {
+        if self.document.is_old {
+            return Ok(());
+        }
+        let mut applied = Vec::new();
+        for name in ["flip_invalid_normals", "use_shadowing_function"] {
+            let (is_given, is_on) = (bsdf.has(name), bsdf.boolean(name, true)?);
+            if is_given && is_on {
+                self.log.warn(&bsdf.place, format!("\"{name}\" is not modelled"), "it is off")?;
+            } else if is_on {
+                applied.push(name);
+            }
+        }
+        if !applied.is_empty() {
+            let what = format!("{} of {} are not modelled", applied.join(" and "), bsdf.plugin);
+            self.log.note(&bsdf.place, what, "the relief is up to 1 % darker or brighter");
+        }
+        Ok(())
     }
 
     /// Returns nested BSDFs, each with its share of the light. The remaining share is absorbed.

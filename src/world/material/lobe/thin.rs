@@ -30,9 +30,9 @@ pub(in crate::material) enum Thin {
 /// Reflection by facets of reflectance 1.
 #[derive(Clone, Debug, PartialEq)]
 pub(in crate::material) enum ThinFacets {
-    /// Of the same roughness in all directions.
+    /// Facets of the same roughness in all directions.
     Isotropic(RoughLobe),
-    /// Of different roughness along u and v.
+    /// Facets of different roughness along u and v.
     Anisotropic(AnisotropicLobe),
 }
 
