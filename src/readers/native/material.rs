@@ -267,6 +267,7 @@ impl SceneBuilder<'_> {
             sheen_tint: share(&text.sheen_tint, 0.0),
             clearcoat: share(&text.clearcoat, 0.0),
             clearcoat_gloss: text.clearcoat_gloss.map_or(0.0, f64::from) as f32,
+            thin: None,
         })
     }
 
