@@ -10,6 +10,7 @@ use super::lobe::{
 use super::microfacet::Microfacets;
 use super::model::Colours;
 use super::roughness::RoughnessValues;
+use super::tables::Tables;
 use base::math::{Rgb, luminance};
 use scene::{Distribution, Fresnel, Principled, Share, TextureId};
 
@@ -119,12 +120,14 @@ struct LobeBuilder<'a> {
     parameters: &'a Principled,
     /// Square root of α.
     roughness: f32,
+    /// See [`Principled::anisotropic`].
+    anisotropy: f32,
     facets: Microfacets,
 }
 
 impl LobeBuilder<'_> {
     /// Builds all lobes. Most lack their tables of albedo.
-    fn all(&self) -> Vec<(PrincipledLobe, LobeModel)> {
+    fn all(&self, tables: &mut Tables) -> Vec<(PrincipledLobe, LobeModel)> {
         let p = self.parameters;
         let is_dielectric = not_all(p.metallic);
         let mut all = self.reflection();
@@ -133,8 +136,7 @@ impl LobeBuilder<'_> {
             all.push((PrincipledLobe::Inside, self.interface(Passage::Reflection, true)));
         }
         if is_dielectric && not_all(p.spec_trans) {
-            let kind = GrazingKind::Retro { roughness: self.roughness };
-            all.push((PrincipledLobe::Retro, LobeModel::Grazing(Grazing::new(kind))));
+            all.push((PrincipledLobe::Retro, LobeModel::Grazing(tables.retro(self.roughness))));
         }
         if some(p.clearcoat) {
             all.push((PrincipledLobe::ClearCoat, LobeModel::ClearCoat(ClearCoat::new(p.clearcoat_gloss))));
@@ -169,12 +171,12 @@ impl LobeBuilder<'_> {
 
     /// Builds a lobe of microfacet reflection.
     fn rough(&self, fresnel: Fresnel) -> LobeModel {
-        let (anisotropic, facets) = (self.parameters.anisotropic, self.facets);
-        if anisotropic == 0.0 {
+        let facets = self.facets;
+        if self.parameters.anisotropic == Share::Constant(0.0) {
             return LobeModel::Rough(RoughLobe::new(facets, fresnel));
         }
-        let aspect = (1.0 - 0.9 * anisotropic).sqrt();
-        let alpha = [facets.alpha / aspect, facets.alpha * aspect].map(|alpha| alpha.max(MIN_ALPHA));
+        let alpha = self.parameters.stretch.alphas(facets.alpha, self.anisotropy);
+        let alpha = alpha.map(|alpha| alpha.max(MIN_ALPHA));
         LobeModel::Anisotropic(AnisotropicLobe::new(facets.distribution, alpha, fresnel))
     }
 
@@ -201,10 +203,12 @@ impl PrincipledColours {
         parameters: &Principled,
         roughness: RoughnessValues,
         most: usize,
+        tables: &mut Tables,
     ) -> (PrincipledColours, Vec<LobeModel>) {
+        let anisotropy = roughness.alpha(&parameters.anisotropic).clamp(0.0, 1.0);
         let roughness = roughness.alpha(&parameters.roughness);
         let facets = Microfacets::new(Distribution::Ggx, (roughness * roughness).max(MIN_ALPHA));
-        let mut all = LobeBuilder { parameters, roughness, facets }.all();
+        let mut all = LobeBuilder { parameters, roughness, anisotropy, facets }.all(tables);
         all.truncate(most);
         let (kinds, lobes) = all.into_iter().unzip();
         (PrincipledColours { parameters: Box::new(parameters.clone()), lobes: kinds }, lobes)
@@ -213,7 +217,7 @@ impl PrincipledColours {
     /// Returns true if any colour is textured.
     pub fn is_textured(&self) -> bool {
         let mut colours = self.parameters.clone();
-        colours.roughness = Share::Constant(0.0);
+        (colours.roughness, colours.anisotropic) = (Share::Constant(0.0), Share::Constant(0.0));
         colours.is_textured()
     }
 
