@@ -76,7 +76,8 @@ pub enum Command {
 pub struct RenderArgs {
     /// Scene: native (.toml), Mitsuba (.xml) or glTF (.glb, .gltf)
     pub scene: PathBuf,
-    /// Image to write: 32-bit float OpenEXR with metadata, and with variance if it is known
+    /// Image to write: 32-bit float OpenEXR with metadata, and with variance if it is known; `####` or `%04d` in the
+    /// name stands for the number of `--frame`
     #[arg(short, long, value_name = "FILE.exr")]
     pub output: PathBuf,
     /// The method and its settings.

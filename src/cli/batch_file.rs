@@ -1,7 +1,7 @@
 //! Job files of batches: images and walks in TOML, each with the options of its command.
 //!
-//! An entry becomes the arguments of `render`, or of `walk` if the name of its file has a placeholder for a number. So
-//! a job file may hold every option of these commands, with the same meaning.
+//! An entry becomes the arguments of `walk` if the name of its file has a placeholder for a number and no `frame` is
+//! given, else of `render`. So a job file may hold every option of these commands, with the same meaning.
 
 use super::args::{Cli, Command};
 use super::exit::Failure;
@@ -149,7 +149,8 @@ pub fn read(path: &Path, more: &[&str]) -> Result<Vec<JobEntry>, Failure> {
 impl JobEntry {
     /// Adds options to the entry. Those that name files are relative to `folder`.
     fn with(mut self, folder: &Path, options: &Table, more: &[&str]) -> Result<JobEntry, Failure> {
-        let is_walk = self.output.to_str().is_some_and(|name| name.parse::<FileNames>().is_ok());
+        let has_place = self.output.to_str().is_some_and(|name| name.parse::<FileNames>().is_ok());
+        let is_walk = has_place && !options.contains_key("frame");
         let command = if is_walk { "walk" } else { "render" };
         let mut arguments: Vec<OsString> = ["lightsplat", command].map(OsString::from).into();
         arguments.extend([self.scene.clone().into(), "-o".into(), self.output.clone().into()]);
@@ -213,6 +214,7 @@ fn scalar(value: &Value) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::job::RenderJob;
     use render::method::Method;
 
     fn entries(text: &str) -> Result<Vec<JobEntry>, Failure> {
@@ -237,9 +239,16 @@ mod tests {
             output = "out/b.##.exr"
             frames = "1-4"
             define = ["X=1", "Y=2"]
+            [[picture]]
+            scene = "b.xml"
+            output = "out/still.##.exr"
+            frame = 3
             "#,
         )
         .unwrap();
+        let Command::Render(frame) = found[2].command().unwrap() else { panic!("{found:?}") };
+        let (exr, png) = RenderJob::files(&frame).unwrap();
+        assert!(exr.ends_with("out/still.03.exr") && png.unwrap().ends_with("out/still.03.png"));
         let Command::Render(still) = found[0].command().unwrap() else { panic!("{found:?}") };
         assert_eq!(still.method.method().unwrap().spp(), 2);
         let Method::Cache(settings) = still.method.method().unwrap() else { panic!("{still:?}") };

@@ -10,9 +10,10 @@ use base::film::Exposure;
 use base::stats::Stopwatch;
 use readers::LoadOptions;
 use render::session::{Goal, Session};
+use render::walk::names::numbered;
 use serde_json::json;
 use std::num::NonZeroUsize;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use world::view::Framing;
 
 /// A validated render: scene, method and output files.
@@ -55,8 +56,8 @@ impl RenderJob {
         let method = args.plan.method(args.method.method()?, &pinned)?;
         let verify = verify::settings(&args.verify, &method, args.plan.error.is_some());
         let plan = args.plan.goal(&method, pinned, args.verify.verify_samples, run)?;
-        let png = args.png.file(&args.output);
-        check_outputs(&args.output, png.as_deref(), args.picture.resume)?;
+        let (output, png) = RenderJob::files(&args)?;
+        check_outputs(&output, png.as_deref(), args.picture.resume)?;
         let goal = Goal {
             method,
             may_choose,
@@ -76,7 +77,7 @@ impl RenderJob {
         Ok(RenderJob {
             scene: args.scene,
             reading: args.picture.reading.options(),
-            output: args.output,
+            output,
             png: png.map(|path| (path, args.png.exposure)),
             resume: args.picture.resume,
             reproducible: args.picture.reproducible,
@@ -91,6 +92,21 @@ impl RenderJob {
             stats: args.stats,
             progress: args.picture.progress,
         })
+    }
+
+    /// Returns the OpenEXR and the PNG file of a command, with the number of the frame where a name has a place for it.
+    ///
+    /// # Errors
+    /// If a name has such a place and the command names no frame.
+    pub fn files(args: &RenderArgs) -> Result<(PathBuf, Option<PathBuf>), Failure> {
+        let frame = args.frame.map(NonZeroUsize::get);
+        let numbered = |option: &str, path: &Path| {
+            numbered(path, frame)
+                .map_err(|what| Failure::usage(anyhow!("{option} {}: {what}", path.display())))
+        };
+        let output = numbered("--output", &args.output)?;
+        let png = args.png.file(&output).map(|path| numbered("--png", &path)).transpose()?;
+        Ok((output, png))
     }
 
     /// Returns the key of the image.

@@ -87,6 +87,7 @@ pub fn run(args: MergeArgs) -> Result<(), Failure> {
 /// Reads an image; returns it without denoising.
 fn noisy(path: &Path) -> Result<ExrFile, Failure> {
     let mut file = ExrFile::read(path).map_err(Failure::input)?;
+    file.check_whole().map_err(Failure::input)?;
     let facts = file.metadata();
     let refuse = |reason: &str| Err(Failure::input(anyhow!("{}: {reason}", path.display())));
     if facts.text("partial") == Some("true") && file.numbers(SAMPLES).is_none() {

@@ -4,7 +4,7 @@
 
 use crate::Location;
 use crate::attributes::NamedAttribute;
-use glam::{DVec3, Vec2, Vec3};
+use glam::{DVec3, Vec2, Vec3, Vec4};
 use scene::{AttributeValues, DeltaLight, Emission, MaterialId, PixelFilter, Projection, Scene};
 
 /// Width and height in pixels of films without a size.
@@ -62,11 +62,15 @@ pub(crate) struct DraftMesh {
     pub normals: Vec<Vec3>,
     /// Texture coordinates of each vertex, v upwards, or empty.
     pub uvs: Vec<Vec2>,
+    /// Tangent of each vertex (see [`scene::Mesh::tangents`]), or empty.
+    pub tangents: Vec<Vec4>,
     pub triangles: Vec<[u32; 3]>,
     pub material: MaterialId,
     pub emission: Option<Emission>,
     /// Number of triangles whose winding was reversed to agree with their vertex normals.
     pub turned: usize,
+    /// True if the file has no texture coordinates for some triangles.
+    pub lacks_uvs: bool,
     pub attributes: Vec<NamedAttribute>,
 }
 

@@ -8,6 +8,7 @@
 
 #![forbid(unsafe_code)]
 
+mod attenuation;
 #[cfg(test)]
 mod attribute_tests;
 mod attributes;
@@ -20,18 +21,27 @@ pub mod error;
 mod file;
 mod finish;
 mod gltf;
+mod lacking_uvs;
 mod layers;
 mod mesh;
+#[cfg(test)]
+mod mirrored_tests;
+#[cfg(test)]
+mod missing_tests;
 mod mitsuba;
 mod native;
 mod options;
+#[cfg(test)]
+mod picture_tests;
 mod plan;
 mod realise;
 #[cfg(test)]
 mod requirements_tests;
 mod selection;
 mod sky;
+mod stand_in;
 mod statements;
+mod surfaces;
 
 use error::Log;
 use finish::{divide, recentre, sanitize, wanted};

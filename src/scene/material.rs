@@ -35,6 +35,10 @@ pub struct Material {
     pub opacity: Option<Share>,
     /// Relief, which changes the shading normals.
     pub relief: Option<Relief>,
+    /// Absorption coefficient σ of what is inside solid glass, per channel and per unit of length of the scene.
+    ///
+    /// Light that goes the way d inside keeps the share exp(-σ d).
+    pub absorption: Option<Rgb>,
 }
 
 impl Material {
@@ -72,6 +76,20 @@ impl Material {
             let principled = part.principled.as_ref().filter(|p| p.anisotropic != Share::Constant(0.0));
             let of_principled = principled.map(|p| (p.anisotropic_rotation, p.anisotropic_direction));
             of_principled.or_else(|| part.lobes.iter().find_map(of_lobe))
+        })
+    }
+
+    /// Returns the absorption coefficient inside, if the material is of solid glass that absorbs.
+    ///
+    /// In a mixture, the first material that absorbs counts.
+    pub fn interior_absorption(&self) -> Option<Rgb> {
+        let is_solid =
+            |lobe: &Lobe| matches!(lobe, Lobe::Dielectric { thin: false, .. } | Lobe::RoughDielectric { .. });
+        let transmits = |principled: &Principled| principled.spec_trans != Share::Constant(0.0);
+        self.parts().find_map(|part| {
+            let is_glass =
+                part.lobes.iter().any(is_solid) || part.principled.as_deref().is_some_and(transmits);
+            part.absorption.filter(|absorption| is_glass && *absorption != Rgb::ZERO)
         })
     }
 

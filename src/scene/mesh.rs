@@ -4,7 +4,7 @@ use super::attribute::{Attribute, AttributeId};
 use super::material::MaterialId;
 use super::texture::TextureId;
 use base::math::Rgb;
-use glam::{DVec3, Vec2, Vec3};
+use glam::{DVec3, Vec2, Vec3, Vec4};
 
 /// An indexed triangle mesh with one material.
 #[derive(Clone, Debug)]
@@ -20,6 +20,11 @@ pub struct Mesh {
     pub normals: Vec<Vec3>,
     /// Texture coordinates of each vertex, v upwards, or empty for barycentric coordinates.
     pub uvs: Vec<Vec2>,
+    /// Tangent of each vertex, or empty for the direction of growing u.
+    ///
+    /// Normal maps and anisotropy have their x axis along x, y, z; the normal × this axis × the sign of w is their y
+    /// axis. A tangent of zeros stands for the direction of growing u.
+    pub tangents: Vec<Vec4>,
     /// Vertex indices, counter-clockwise seen from the front. All are in range.
     pub triangles: Vec<[u32; 3]>,
     /// Material of every triangle.
@@ -30,7 +35,7 @@ pub struct Mesh {
     pub attributes: Vec<Attribute>,
 }
 
-/// Diffuse emission of a surface.
+/// Diffuse emission of a surface, to be multiplied by the opacity of its material at each point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Emission {
     /// Radiance from every point of the front, in every direction, W/(sr m²).
@@ -58,6 +63,18 @@ impl Mesh {
         }
         let [n0, n1, n2] = vertices.map(|i| self.normals[i as usize]);
         Some(n0 * (1.0 - b.x - b.y) + n1 * b.x + n2 * b.y)
+    }
+
+    /// Returns the interpolated tangent, not of unit length; `None` if the mesh has no tangents.
+    ///
+    /// `b` are the barycentric weights of the last two of a triangle's `vertices`.
+    #[inline]
+    pub fn tangent(&self, vertices: &[u32; 3], b: Vec2) -> Option<Vec4> {
+        if self.tangents.is_empty() {
+            return None;
+        }
+        let [t0, t1, t2] = vertices.map(|i| self.tangents[i as usize]);
+        Some(t0 * (1.0 - b.x - b.y) + t1 * b.x + t2 * b.y)
     }
 
     /// Returns the texture coordinates, or `b` if the mesh has none.

@@ -119,6 +119,7 @@ impl Requirements {
             r.memory.geometry += 2 * 12 * (mesh.positions.len() + mesh.triangles.len())
                 + 12 * mesh.normals.len()
                 + 8 * mesh.uvs.len()
+                + 16 * mesh.tangents.len()
                 + 12 * mesh.attributes.iter().map(|attribute| attribute.values.all().len()).sum::<usize>();
             r.attributes += mesh.attributes.len();
             if let Some(emission) = mesh.emission {

@@ -115,7 +115,14 @@ impl World {
             let share = self.share_passing(&hit, out, &mut last);
             crossed.add(Crossing { hit, share })
         });
-        if is_free { crossed.transmittance(self, segment) } else { Rgb::ZERO }
+        if !is_free {
+            return Rgb::ZERO;
+        }
+        let passed = crossed.transmittance(self, segment);
+        match self.absorbs() {
+            true => passed * self.share_between(segment, crossed.all().iter().map(|crossing| crossing.hit)),
+            false => passed,
+        }
     }
 
     /// Returns the share of the light towards the unit vector `out` that passes the sheet at a hit.

@@ -179,6 +179,7 @@ pub fn quad(corner: Vec3, a: Vec3, b: Vec3, material: MaterialId) -> Mesh {
         positions: vec![corner, corner + a, corner + a + b, corner + b],
         normals: Vec::new(),
         uvs: Vec::new(),
+        tangents: Vec::new(),
         triangles: vec![[0, 1, 2], [0, 2, 3]],
         material,
         emission: None,

@@ -14,6 +14,7 @@ fn world(normals: Vec<Vec3>) -> World {
         positions,
         normals,
         uvs: Vec::new(),
+        tangents: Vec::new(),
         triangles: vec![[0, 1, 2]],
         material: MaterialId(0),
         emission: None,

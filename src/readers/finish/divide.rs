@@ -82,6 +82,7 @@ fn add_middle(mesh: &mut DraftMesh, edge: [u32; 2]) -> u32 {
     // The middle normal is not of unit length, so interpolation along the edge gives the values of the whole edge.
     add(&mut mesh.normals, edge, |a, b| 0.5 * a + 0.5 * b);
     add(&mut mesh.uvs, edge, |a, b| 0.5 * a + 0.5 * b);
+    add(&mut mesh.tangents, edge, |a, b| 0.5 * a + 0.5 * b);
     for attribute in &mut mesh.attributes {
         if let AttributeValues::Vertices(values) = &mut attribute.values {
             add(values, edge, |a, b| 0.5 * a + 0.5 * b);

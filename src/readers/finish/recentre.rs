@@ -142,6 +142,7 @@ pub(crate) fn recentre(draft: Draft, coordinates: &LocalCoordinates) -> (Scene, 
         positions: m.positions.into_iter().map(local).collect(),
         normals: m.normals,
         uvs: m.uvs,
+        tangents: m.tangents,
         triangles: m.triangles,
         material: m.material,
         emission: m.emission,
@@ -162,17 +163,20 @@ pub(crate) fn recentre(draft: Draft, coordinates: &LocalCoordinates) -> (Scene, 
         vicinity: coordinates.vicinity,
         ..draft.scene
     };
-    scene.materials.iter_mut().for_each(|material| scale_heights(material, scale));
+    scene.materials.iter_mut().for_each(|material| scale_lengths(material, scale));
     (scene, cameras)
 }
 
-/// Converts heights of reliefs to the local unit.
-fn scale_heights(material: &mut Material, by: f64) {
+/// Converts heights of reliefs and absorption by length to the local unit.
+fn scale_lengths(material: &mut Material, by: f64) {
+    if let Some(absorption) = &mut material.absorption {
+        *absorption = (absorption.as_dvec3() / by).min(DVec3::splat(f32::MAX.into())).as_vec3();
+    }
     if let Some(Relief::Heights { scale, .. }) = &mut material.relief {
         *scale = (f64::from(*scale) * by).clamp(f32::MIN.into(), f32::MAX.into()) as f32;
     }
     if let Some(blend) = &mut material.blend {
-        scale_heights(&mut blend.other, by);
+        scale_lengths(&mut blend.other, by);
     }
 }
 
@@ -246,6 +250,23 @@ mod tests {
                 a.positions.iter().zip(&b.positions).map(|(a, b)| (a - b * 1e3).length()).fold(0.0, f32::max);
             // Rounding of f64 at 1e6, magnified by 1e3.
             assert!(worst < 1e-6, "{worst}");
+        }
+    }
+
+    #[test]
+    fn glass_absorbs_the_same_in_any_unit() {
+        for scale in [1e-6, 1.0, 1e9] {
+            let text = format!(
+                "material = [{{ name = \"m\", kind = \"glass\", attenuation_colour = 0.5, attenuation_distance = {scale:e} }}]\n\
+                mesh = [{{ shape = \"sphere\", material = \"m\", transform = [{{ scale = {scale:e} }}] }}]\n"
+            );
+            let folder = tempfile::tempdir().unwrap();
+            let path = folder.path().join("s.toml");
+            std::fs::write(&path, text).unwrap();
+            let scene = load(&path, &LoadOptions::default()).unwrap().scene;
+            let distance = (scale / scene.unit()) as f32;
+            let left = (-scene.materials[0].absorption.unwrap().x * distance).exp();
+            assert!((left - 0.5).abs() < 1e-5 && (scene.exponent != 0) == (scale != 1.0), "{scale}: {left}");
         }
     }
 

@@ -1,5 +1,6 @@
-//! The container: JSON, binary chunk and buffers of a `.gltf` or `.glb` file.
+//! A file with its buffers, and the look-up of its objects.
 
+use super::container::Container;
 use crate::error::{Location, SceneError};
 use crate::file::{fnv1a, folder_of, read_file};
 use base64::Engine;
@@ -40,15 +41,8 @@ impl GltfFile {
     pub fn open(path: &Path, from: &Location) -> Result<GltfFile, SceneError> {
         let bytes = read_file(path, from)?;
         let place = Location::file(path);
-        let (json, binary) = match bytes.starts_with(b"glTF") {
-            true => chunks(&bytes).map_err(|what| SceneError::mesh(place.clone(), what))?,
-            false => (&bytes[..], None),
-        };
-        let root: Root = serde_json::from_slice(json).map_err(|error| {
-            let is_text = binary.is_none() && !bytes.starts_with(b"glTF");
-            let place = if is_text { Location::line(path, error.line() as u32) } else { place.clone() };
-            place.malformed(error.to_string())
-        })?;
+        let container = Container::of(&bytes, &place)?;
+        let root = container.root(&place)?;
         check_extensions(&root, &place)?;
         let mut document = GltfFile {
             root,
@@ -58,7 +52,7 @@ impl GltfFile {
             place,
         };
         for i in 0..document.root.buffers.len() {
-            let buffer = document.buffer(i, binary)?;
+            let buffer = document.buffer(i, container.binary)?;
             document.buffers.push(buffer);
         }
         Ok(document)
@@ -125,29 +119,6 @@ impl GltfFile {
 pub(super) enum Resolved {
     Bytes(Vec<u8>),
     File(PathBuf),
-}
-
-/// Returns the JSON of a GLB file and its binary chunk.
-fn chunks(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), String> {
-    let word = |at: usize| {
-        let four = bytes.get(at..at + 4).and_then(|four| four.try_into().ok());
-        four.map(u32::from_le_bytes).ok_or("the file ends within a header")
-    };
-    let version = word(4)?;
-    if version != 2 {
-        return Err(format!("it is glTF of version {version}, not 2"));
-    }
-    let chunk = |at: usize, kind: &[u8]| {
-        let (length, end) = (word(at)? as usize, at + 8);
-        if bytes.get(at + 4..end) != Some(kind) {
-            return Err("a chunk is of another kind than it should be");
-        }
-        bytes.get(end..end + length).ok_or("the file ends within a chunk")
-    };
-    let json = chunk(12, b"JSON")?;
-    let next = 20 + json.len().next_multiple_of(4);
-    let binary = if next + 8 <= bytes.len() { Some(chunk(next, b"BIN\0")?) } else { None };
-    Ok((json, binary))
 }
 
 fn check_extensions(root: &Root, place: &Location) -> Result<(), SceneError> {

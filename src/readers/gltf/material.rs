@@ -2,7 +2,6 @@
 //!
 //! Deviations:
 //! - A sheet that transmits (no thickness) is smooth, and transmits fully or not at all.
-//! - Absorption by a volume depends on the stated thickness, not on the length of a ray inside.
 //! - A clear coat is that of the principled material, which reflects a quarter of the extension's coat.
 //! - Sheen is that of the principled material.
 
@@ -15,7 +14,7 @@ use crate::error::SceneError;
 use crate::plan::Appearance;
 use base::math::Rgb;
 use gltf_json::Index;
-use gltf_json::extensions::material::{Material as Extensions, Volume};
+use gltf_json::extensions::material::Material as Extensions;
 use gltf_json::material::{AlphaMode, Material as Source};
 use gltf_json::texture::Info;
 use gltf_json::validation::Checked;
@@ -131,7 +130,7 @@ impl Importer<'_> {
             return Ok(material);
         }
         let pbr = &source.pbr_metallic_roughness;
-        let base_color = self.base_colour(source, extensions.volume.as_ref(), name)?;
+        let base_color = self.base_colour(source, name)?;
         let base_color = match colours {
             VertexColours::None => base_color,
             VertexColours::Opaque | VertexColours::WithAlpha => {
@@ -149,6 +148,8 @@ impl Importer<'_> {
         };
         let eta = relative_index(extensions);
         let is_sheet = extensions.volume.as_ref().is_none_or(|volume| volume.thickness_factor.0 <= 0.0);
+        let volume = extensions.volume.as_ref().filter(|_| transmission.is_some() && !is_sheet);
+        let absorption = volume.and_then(|volume| self.absorption(volume, name));
         let is_smooth = matches!(roughness, Share::Constant(roughness) if roughness <= MAX_SMOOTH);
         let is_clear = matches!(spec_trans, Share::Constant(share) if share >= 1.0);
         let transmits = transmission.is_some_and(|t| t.transmission_factor.0 >= 0.5);
@@ -161,13 +162,20 @@ impl Importer<'_> {
             let white = Reflectance::Constant(Rgb::ONE);
             let glass =
                 Lobe::Dielectric { eta, thin: is_sheet, reflectance: white, transmittance: base_color };
-            return Ok(Material { lobes: vec![glass], ..material });
+            return Ok(Material { lobes: vec![glass], absorption, ..material });
         }
         let spec_trans = if is_sheet { Share::Constant(0.0) } else { spec_trans };
-        let mut principled =
-            Principled { base_color, metallic, roughness, eta, spec_trans, ..Principled::default() };
+        let mut principled = Principled {
+            base_color,
+            metallic,
+            roughness,
+            eta,
+            spec_trans,
+            tints_each_passage: true,
+            ..Principled::default()
+        };
         self.layers(&extensions.others, &mut principled, name)?;
-        Ok(Material { principled: Some(Box::new(principled)), ..material })
+        Ok(Material { principled: Some(Box::new(principled)), absorption, ..material })
     }
 
     /// Reads clear coat, sheen and anisotropy.
@@ -253,22 +261,10 @@ impl Importer<'_> {
         })
     }
 
-    fn base_colour(
-        &mut self,
-        source: &Source,
-        volume: Option<&Volume>,
-        name: &str,
-    ) -> Result<Reflectance, SceneError> {
+    fn base_colour(&mut self, source: &Source, name: &str) -> Result<Reflectance, SceneError> {
         let base = &source.pbr_metallic_roughness;
         let [r, g, b, _] = base.base_color_factor.0;
-        let mut scale = Rgb::new(r, g, b);
-        if let Some(volume) = volume.filter(|volume| volume.attenuation_distance.0.is_finite()) {
-            let exponent = volume.thickness_factor.0 / volume.attenuation_distance.0;
-            let passed = Rgb::from(volume.attenuation_color.0).max(Rgb::ZERO).powf(exponent.max(0.0));
-            scale *= passed.min(Rgb::ONE);
-            let what = "light that volumes absorb depends on their stated thickness";
-            self.report.lacks(what, "it is the same for all ways through them", name);
-        }
+        let scale = Rgb::new(r, g, b);
         let texture = match &base.base_color_texture {
             Some(info) => self.texture(&TextureUse::of(info), Channel::Colour, name)?,
             None => None,
@@ -303,7 +299,7 @@ impl Importer<'_> {
                     let what = "opacities of vertices that a mask cuts are not modelled";
                     self.report.lacks(what, "they are 1", name);
                 }
-                // A texel is opaque if its alpha times the factor reaches the cutoff.
+                // A point is opaque if its alpha times the factor reaches the cutoff.
                 match texture {
                     Some(info) if factor >= cutoff => {
                         self.share(1.0, Some(info), Channel::AlphaFrom(cutoff / factor), name)?

@@ -6,19 +6,21 @@ use crate::attributes::{NamedAttribute, VERTEX_ALPHA, VERTEX_COLOUR};
 use crate::error::SceneError;
 use crate::mesh::RawMesh;
 use base::math::Rgb;
-use glam::{DVec3, Vec2, Vec3};
+use glam::{DVec3, Vec2, Vec3, Vec4};
 use gltf_json::Index;
 use gltf_json::accessor::{Accessor, Type};
 use gltf_json::mesh::{Mode, Primitive, Semantic};
 use gltf_json::validation::Checked;
 
-/// Reads a primitive with the texture coordinates of set `uv_set`; `what` names it in messages.
+/// Reads a primitive with the texture coordinates of set `uv_set`; `what` names it in messages. Tangents are read if
+/// `with_tangents`.
 ///
 /// Returns `None` for points and lines.
 pub(super) fn read(
     document: &GltfFile,
     primitive: &Primitive,
     uv_set: u32,
+    with_tangents: bool,
     what: &str,
     report: &mut Findings,
 ) -> Result<Option<RawMesh>, SceneError> {
@@ -31,9 +33,6 @@ pub(super) fn read(
         }
         Checked::Invalid => return Err(document.wrong(format!("{what}: its mode is unknown"))),
     };
-    if primitive.targets.as_ref().is_some_and(|targets| !targets.is_empty()) {
-        report.lacks("morph targets are not modelled", "the base shape stands", what);
-    }
     let Some(positions) = attribute(Semantic::Positions) else {
         return Err(document.wrong(format!("{what} has no positions")));
     };
@@ -46,14 +45,22 @@ pub(super) fn read(
         Some(uvs) => document.vectors::<2>(uvs, what)?,
         None => Vec::new(),
     };
+    // Tangents without normals do not count (glTF 2.0 specification, section 3.7.2.1).
+    let tangents = match attribute(Semantic::Tangents) {
+        Some(tangents) if with_tangents && !normals.is_empty() => document.vectors::<4>(tangents, what)?,
+        _ => Vec::new(),
+    };
     let attributes = match attribute(Semantic::Colors(0)) {
         Some(colours) => attributes(document, colours, what)?,
         None => Vec::new(),
     };
     let colours = attributes.first().map_or(0, |colours| colours.values.all().len());
-    for (name, length) in
-        [("normals", normals.len()), ("texture coordinates", uvs.len()), ("colours", colours)]
-    {
+    for (name, length) in [
+        ("normals", normals.len()),
+        ("texture coordinates", uvs.len()),
+        ("tangents", tangents.len()),
+        ("colours", colours),
+    ] {
         if length != 0 && length != positions.len() {
             return Err(
                 document.wrong(format!("{what} has {} vertices and {length} {name}", positions.len()))
@@ -61,16 +68,17 @@ pub(super) fn read(
         }
     }
     let corners = match primitive.indices {
-        Some(indices) => document.integers(indices, what)?,
+        Some(indices) => document.integers::<1>(indices, what)?.into_flattened(),
         None => (0..positions.len() as u32).collect(),
     };
     Ok(Some(RawMesh {
         positions: positions.iter().map(|p| DVec3::from(p.map(f64::from))).collect(),
         normals: normals.into_iter().map(Vec3::from).collect(),
         uvs: uvs.into_iter().map(Vec2::from).collect(),
+        tangents: tangents.into_iter().map(Vec4::from).collect(),
         triangles: triangles(&corners, mode),
-        groups: Vec::new(),
         attributes,
+        ..RawMesh::default()
     }))
 }
 

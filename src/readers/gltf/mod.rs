@@ -12,14 +12,19 @@
 mod accessor;
 mod animation;
 mod camera;
+mod container;
 mod document;
 mod importer;
 mod light;
 mod material;
 mod mesh;
+mod morph;
 mod nodes;
+mod pose;
 mod report;
+mod skin;
 mod texture;
+mod volume;
 
 use crate::draft::{DEFAULT_RESOLUTION, DraftCamera, Shot};
 use crate::error::{Location, Log, SceneError};
@@ -32,6 +37,7 @@ use camera::Viewer;
 use document::GltfFile;
 use glam::DVec3;
 use importer::Importer;
+use pose::Pose;
 use report::Findings;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -76,12 +82,19 @@ pub fn import(
     log: &mut Log,
 ) -> Result<Imported, SceneError> {
     let document = GltfFile::open(path, from)?;
-    let tree = nodes::tree(&document, &options.selection)?;
+    if let (Some(time), true) = (options.time, document.root.animations.is_empty()) {
+        let what = format!("time is {time}, and {} has no animation", path.display());
+        return Err(from.wrong(what, "leave time out"));
+    }
+    let pose = Pose::at(&document, options.time)?;
+    let tree = nodes::tree(&document, &options.selection, |index, node| pose.local(index, node))?;
     if !tree.iter().any(|placed| placed.selected) && !options.selection.only.is_empty() {
         return Err(from.undefined("node", &options.selection.only.join("\", \"")));
     }
     let mut importer = Importer {
         document: &document,
+        tree: &tree,
+        pose: &pose,
         options,
         contents,
         report: Findings::default(),
@@ -96,7 +109,9 @@ pub fn import(
     for name in document::unread_extensions(&document.root) {
         report.lacks(&format!("the extension {name} is not modelled"), "it is left out", "");
     }
-    let viewer = Viewer { document: &document, tree: &tree, to_world: options.to_world, fps: options.fps };
+    let is_posed = options.time.is_some();
+    let viewer =
+        Viewer { document: &document, tree: &tree, to_world: options.to_world, fps: options.fps, is_posed };
     let shot = viewer.shot(options.camera.as_deref(), &mut report)?;
     report.write(&document.place, log)?;
     Ok(Imported { shot, sources: document.sources })

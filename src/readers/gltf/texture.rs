@@ -83,6 +83,11 @@ impl Importer<'_> {
             Some(Checked::Valid(MagFilter::Nearest)) => Filter::Nearest,
             _ => Filter::Bilinear,
         };
+        // Interpolated values are cut afterwards.
+        let (channel, filter) = match (channel, filter) {
+            (Channel::AlphaFrom(cutoff), Filter::Bilinear) => (Channel::One(3), Filter::Cut(cutoff)),
+            other => other,
+        };
         let image_name = image.name.clone().unwrap_or_else(|| format!("image {}", texture.source.value()));
         let source = self.image(image, texture.source)?;
         let image = TextureSource::Part { name: image_name, source, channel };

@@ -2,7 +2,7 @@
 //!
 //! Vertices have optional normals and texture coordinates. Faces have any number of corners; `polygon` triangulates
 //! them. Colours and other attributes of both are those that `ply_attributes` finds. Other elements and properties are
-//! ignored.
+//! named (see `ply_statements`).
 //!
 //! Reasons against `ply-rs-bw` 4.0.1:
 //! - Reading ends at bytes that are not UTF-8, at blank lines, and at ASCII elements over several lines.
@@ -10,16 +10,17 @@
 //! - Messages have three lines.
 
 use super::ply_attributes::{self, Channel, CollectedAttributes, PlyAttribute, max_of_type};
-use super::{RawMesh, polygon};
-use crate::error::{Location, SceneError};
+use super::{RawMesh, ply_statements, polygon};
+use crate::error::{Location, SceneError, Warning};
 use glam::{DVec3, Vec2, Vec3};
 use scene::AttributeValues;
 use std::path::Path;
 
-/// Reads the PLY file `bytes`; `path` is for messages.
-pub fn read(bytes: &[u8], path: &Path) -> Result<RawMesh, SceneError> {
+/// Reads the PLY file `bytes`; `path` is for messages. Names in `remarks` what is not read.
+pub fn read(bytes: &[u8], path: &Path, remarks: &mut Vec<Warning>) -> Result<RawMesh, SceneError> {
     let (header, body) =
         header(bytes).map_err(|(line, what)| SceneError::mesh(Location::line(path, line), what))?;
+    remarks.extend(ply_statements::unread(&bytes[..bytes.len() - body.len()], path));
     let mut values: Box<dyn PlyValues> = match header.format {
         Format::Ascii => Box::new(Ascii { rest: body, line: header.lines }),
         Format::LittleEndian => Box::new(Binary { rest: body, big_endian: false }),
@@ -338,6 +339,10 @@ fn faces(element: &Element, values: &mut dyn PlyValues, mesh: &mut RawMesh) -> R
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    fn read(bytes: &[u8], path: &Path) -> Result<RawMesh, SceneError> {
+        super::read(bytes, path, &mut Vec::new())
+    }
 
     const HEADER: &str = "ply\nformat FORMAT 1.0\ncomment made here\nelement vertex 4\nproperty float x\n\
         property float y\nproperty double z\nproperty float s\nproperty float t\nelement extra 1\n\

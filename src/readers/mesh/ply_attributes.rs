@@ -43,6 +43,11 @@ pub(super) struct PlyAttribute {
 }
 
 impl PlyAttribute {
+    /// Returns the numbers of the properties that are channels of the attribute.
+    pub fn properties(&self) -> impl Iterator<Item = usize> {
+        self.channels.iter().map(|(at, _)| *at)
+    }
+
     /// Returns the value of an element, whose properties have the values `row`.
     pub fn value(&self, row: &[f64]) -> Rgb {
         let channel = |&(at, max): &(usize, Option<f64>)| {

@@ -119,10 +119,13 @@ impl Converter<'_> {
         let of_emission = emission.and_then(|emission| emission.texture);
         let textured =
             self.reads_images(material) || of_emission.is_some_and(|texture| self.contents.is_image(texture));
+        let to_world = shape.transform("to_world")?.unwrap_or(DMat4::IDENTITY);
+        // Mitsuba turns a sphere inside out if the sphere's own transform mirrors it.
+        let is_turned = shape.plugin == "sphere" && to_world.determinant() < 0.0;
         let placement = Placement {
-            to_world: outer * shape.transform("to_world")?.unwrap_or(DMat4::IDENTITY),
+            to_world: outer * to_world,
             normals: if shape.boolean("face_normals", false)? { Normals::Flat } else { Normals::Smooth },
-            flip_normals: shape.boolean("flip_normals", false)?,
+            flip_normals: shape.boolean("flip_normals", false)? != is_turned,
             v_down,
             needs_uv: textured,
         };

@@ -130,6 +130,8 @@ pub(super) struct MaterialText {
     pub eta: Option<ColourText>,
     pub k: Option<ColourText>,
     pub thin: Option<bool>,
+    pub attenuation_colour: Option<ColourText>,
+    pub attenuation_distance: Option<Number>,
     pub opacity: Option<NumberText>,
     pub normal_map: Option<MapText>,
     pub bump_map: Option<MapText>,
@@ -261,6 +263,8 @@ pub(super) struct MeshText {
     pub lumens_per_watt: Option<Number>,
     /// Frames per second of a glTF model's animation.
     pub fps: Option<Number>,
+    /// Time in seconds of a glTF model's animation whose pose the model takes.
+    pub time: Option<Number>,
     pub material: Option<Spanned<String>>,
     #[serde(default)]
     pub transform: Vec<Spanned<StepText>>,

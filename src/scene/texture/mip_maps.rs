@@ -5,7 +5,7 @@
 //! stands for. Linear interpolation reaches twice as far as a texel is wide, and the next level blurs fine patterns.
 //! Pixels take several samples, which hide the steps between levels and average along areas that are longer than wide.
 
-use super::image::{Texture, TextureId};
+use super::image::{Filter, Texture, TextureId};
 use super::textures::Textures;
 use crate::attribute::AttributeId;
 use base::math::Rgb;
@@ -29,11 +29,13 @@ struct Pyramid {
 }
 
 impl MipMaps {
-    /// Shares `textures`, and computes coarser versions of the `filtered` ones.
+    /// Shares `textures`, and computes coarser versions of the `filtered` ones. Cut textures have none.
     pub fn new(textures: &Textures, filtered: impl Iterator<Item = TextureId>) -> MipMaps {
         let mut pyramids: Vec<Pyramid> = Vec::new();
         for TextureId(id) in filtered {
-            let Some(texture) = textures.get(id as usize).filter(|t| t.texels.len() > 1) else { continue };
+            let may_be_coarser =
+                |texture: &&Texture| texture.texels.len() > 1 && !matches!(texture.filter, Filter::Cut(_));
+            let Some(texture) = textures.get(id as usize).filter(may_be_coarser) else { continue };
             pyramids.resize(textures.len(), Pyramid::default());
             let pyramid = &mut pyramids[id as usize];
             if pyramid.levels.is_empty() {
@@ -104,7 +106,7 @@ fn coarser(texture: &Texture) -> Vec<Texture> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::texture::{Filter, Texels, Wrap};
+    use crate::texture::{Texels, Wrap};
     use glam::Mat3;
 
     /// Returns a checker of 64 × 32 texels, black and white in the upper half, black and red in the lower half.

@@ -11,6 +11,9 @@ mod direct;
 mod distribution;
 mod emitters;
 mod environment;
+mod factor;
+#[cfg(test)]
+mod factor_tests;
 mod learned;
 mod packet;
 mod receivers;
@@ -21,7 +24,7 @@ mod tests;
 mod tree;
 mod triangles;
 
-pub use area::{AreaLight, AreaPoint, emitted};
+pub use area::{AreaLight, AreaPoint};
 pub use delta::{delta_irradiance, delta_power, spot_falloff};
 pub use direct::{DirectSample, DirectSamples16};
 pub use distribution::DiscreteDistribution;

@@ -2,7 +2,6 @@
 
 use super::base::CoatInterface;
 use super::build::{Builder, Colouring, MaterialEntry};
-use super::colours::opaque;
 use super::model::Bsdf;
 use super::straight::LastStraight;
 use base::math::{Rgb, luminance};
@@ -166,7 +165,7 @@ impl Materials {
         match &entry.opacity {
             Some(opacity) => {
                 let uv = uv();
-                Rgb::splat(1.0 - opaque(opacity, |id| self.textures.textures().lookup(id, uv, &attribute)))
+                Rgb::splat(1.0 - opacity.share(|id| self.textures.textures().lookup(id, uv, &attribute)))
             }
             None => self.at_coordinates(id, uv, || 0.0, attribute).straight_transmittance(cos()),
         }

@@ -57,6 +57,8 @@ struct PrincipledValues {
     sheen: f32,
     sheen_tint: f32,
     clearcoat: f32,
+    /// Factor on transmitted light.
+    tint: Rgb,
 }
 
 impl PrincipledValues {
@@ -74,6 +76,10 @@ impl PrincipledValues {
             sheen: share(&p.sheen),
             sheen_tint: share(&p.sheen_tint),
             clearcoat: share(&p.clearcoat),
+            tint: match p.tints_each_passage {
+                true => colour,
+                false => Rgb::from_array(colour.to_array().map(f32::sqrt)),
+            },
         }
     }
 
@@ -101,9 +107,7 @@ impl PrincipledValues {
             PrincipledLobe::Hued => Rgb::ONE,
             PrincipledLobe::HuedNormal => self.hued_normal(eta),
             PrincipledLobe::HuedEdge => Rgb::splat(self.hued_edge()),
-            PrincipledLobe::Transmission => {
-                Rgb::from_array(self.colour.to_array().map(f32::sqrt)) * transmitted
-            }
+            PrincipledLobe::Transmission => self.tint * transmitted,
             PrincipledLobe::Inside => Rgb::splat(transmitted),
             PrincipledLobe::Retro => self.diffuse(),
             PrincipledLobe::ClearCoat => Rgb::splat(self.clearcoat),

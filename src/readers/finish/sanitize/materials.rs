@@ -45,6 +45,13 @@ pub(super) fn check_material(
             return Err(checks.wrong(format!("its relief has the factor {factor}"), "give a number"));
         }
     }
+    if let Some(absorption) = material.absorption {
+        if !(absorption.is_finite() && absorption.min_element() >= 0.0) {
+            let what = format!("its inside absorbs {absorption} of the light by length");
+            return Err(checks.wrong(what, "give an attenuation colour from 0 to 1 and a distance above 0"));
+        }
+        material.absorption = Some(absorption).filter(|absorption| *absorption != Rgb::ZERO);
+    }
     material.opacity = material.opacity.filter(|opacity| *opacity != Share::Constant(1.0));
     scale_sum(material, place, report, log)
 }

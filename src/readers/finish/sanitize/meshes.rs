@@ -60,6 +60,9 @@ pub(super) fn use_all_vertices(mesh: &mut DraftMesh) {
     if mesh.uvs.len() != count {
         mesh.uvs.clear();
     }
+    if mesh.tangents.len() != count {
+        mesh.tangents.clear();
+    }
     let triangle_count = mesh.triangles.len();
     mesh.attributes.retain(|attribute| match &attribute.values {
         AttributeValues::Vertices(values) => values.len() == count,
@@ -77,6 +80,7 @@ pub(super) fn use_all_vertices(mesh: &mut DraftMesh) {
     keep(&mut mesh.positions, used);
     keep(&mut mesh.normals, used);
     keep(&mut mesh.uvs, used);
+    keep(&mut mesh.tangents, used);
     for attribute in &mut mesh.attributes {
         if let AttributeValues::Vertices(values) = &mut attribute.values {
             keep(values, used);

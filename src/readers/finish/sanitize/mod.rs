@@ -21,7 +21,7 @@ use crate::draft::Draft;
 use crate::error::{Log, SceneError};
 use attributes::repair_attributes;
 use cameras::check_camera;
-use glam::Vec2;
+use glam::{Vec2, Vec4};
 use lights::check_lights;
 use materials::check_material;
 use meshes::{drop_rounded, drop_unusable, repair_normals, use_all_vertices};
@@ -51,6 +51,8 @@ pub(crate) fn sanitize(
         repair_normals(mesh, &mut report);
         let bad_uvs = mesh.uvs.iter_mut().filter(|uv| !uv.is_finite());
         report.bad_uvs += bad_uvs.map(|uv| *uv = Vec2::ZERO).count();
+        let bad_tangents = mesh.tangents.iter_mut().filter(|tangent| !tangent.is_finite());
+        report.bad_tangents += bad_tangents.map(|tangent| *tangent = Vec4::ZERO).count();
         report.turned += mesh.turned;
     }
     if lost as f64 > MAX_LOST * triangles as f64 {

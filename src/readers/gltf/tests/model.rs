@@ -43,13 +43,20 @@ impl Model {
 
     pub fn floats<const N: usize>(&mut self, vectors: &[[f32; N]]) -> usize {
         let bytes: Vec<u8> = vectors.iter().flatten().flat_map(|v| v.to_le_bytes()).collect();
-        let kind = ["SCALAR", "VEC2", "VEC3", "VEC4"][N - 1];
+        let kind = if N == 16 { "MAT4" } else { ["SCALAR", "VEC2", "VEC3", "VEC4"][N - 1] };
         self.accessor(&bytes, COMPONENT_F32, kind, vectors.len())
     }
 
     pub fn indices(&mut self, indices: &[u16]) -> usize {
         let bytes: Vec<u8> = indices.iter().flat_map(|i| i.to_le_bytes()).collect();
         self.accessor(&bytes, COMPONENT_U16, "SCALAR", indices.len())
+    }
+
+    /// Changes the attributes of the first primitive of mesh `mesh`.
+    pub fn attributes(&mut self, mesh: usize, attributes: &[(&str, usize)]) {
+        for (name, accessor) in attributes {
+            self.json["meshes"][mesh]["primitives"][0]["attributes"][name] = json!(accessor);
+        }
     }
 
     /// Adds a mesh of one square from (-1, -1, 0) to (1, 1, 0) that faces +z.

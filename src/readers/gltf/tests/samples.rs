@@ -1,6 +1,7 @@
 //! Sample models for every feature.
 
 use super::model::Model;
+use super::posed;
 use serde_json::{Value, json};
 
 const WHITE: [u8; 4] = [255; 4];
@@ -15,14 +16,16 @@ pub fn all() -> Vec<(&'static str, Model, &'static [&'static str])> {
         ("lights", lights(), &[]),
         ("camera", camera(), &["anything but the camera", "a second animation"]),
         ("alpha", alpha(), &[]),
-        ("glass", glass(), &["absorb", "sheets that transmit in part"]),
+        ("glass", glass(), &["sheets that transmit in part"]),
         ("layers", layers(), &["a quarter", "sheen", "coloured reflection"]),
         ("unlit", unlit(), &["unlit"]),
         ("topology", topology(), &["points and lines"]),
+        ("skin", posed::arm(), &[]),
+        ("face", posed::face(), &["anything but the camera"]),
         (
             "unmodelled",
             unmodelled(),
-            &["morph", "skins", "KHR_materials_iridescence", "EXT_x", "several sets"],
+            &["a skin whose mesh", "KHR_materials_iridescence", "EXT_x", "several sets"],
         ),
     ]
 }
@@ -147,7 +150,9 @@ fn camera() -> Model {
 
 fn alpha() -> Model {
     let mut model = Model::new();
-    let texture = model.texture([WHITE, CLEAR, [255, 255, 255, 100], WHITE], json!({}));
+    let texels = [WHITE, CLEAR, [255, 255, 255, 100], WHITE];
+    let texture = model.texture(texels, json!({}));
+    let nearest = model.texture(texels, json!({ "magFilter": 9728 }));
     let pbr = |alpha: f32, texture: Option<usize>| match texture {
         Some(texture) => {
             json!({ "baseColorFactor": [1, 1, 1, alpha], "baseColorTexture": { "index": texture } })
@@ -160,6 +165,7 @@ fn alpha() -> Model {
         ("BLEND", 0.5, Some(texture)),
         ("OPAQUE", 0.5, None),
         ("MASK", 0.4, None),
+        ("MASK", 0.5, Some(nearest)),
     ] {
         model.shown(
             json!({ "alphaMode": mode, "alphaCutoff": 0.45, "pbrMetallicRoughness": pbr(alpha, texture) }),
@@ -222,6 +228,11 @@ fn unlit() -> Model {
         "name": "sign", "doubleSided": true, "pbrMetallicRoughness": { "baseColorFactor": [0.2, 0.4, 0.8, 1] },
         "extensions": { "KHR_materials_unlit": {} },
     }));
+    let label = model.shown(json!({
+        "name": "label", "alphaMode": "BLEND", "pbrMetallicRoughness": { "baseColorFactor": [0.5, 0.5, 0.25, 0.25] },
+        "extensions": { "KHR_materials_unlit": {} },
+    }));
+    model.json["nodes"][label]["translation"] = json!([0, 0, 1]);
     model.uses("KHR_materials_unlit");
     model
 }

@@ -49,6 +49,7 @@ fn world() -> World {
             positions,
             normals: Vec::new(),
             uvs: Vec::new(),
+            tangents: Vec::new(),
             triangles,
             material: MaterialId(0),
             emission: None,
