@@ -14,7 +14,7 @@ pub struct AttributeId(pub u32);
 pub struct Attribute {
     /// Number of its name.
     pub id: AttributeId,
-    /// Its values.
+    /// Values of the vertices or triangles.
     pub values: AttributeValues,
 }
 

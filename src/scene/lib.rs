@@ -30,7 +30,7 @@ pub use material::{Blend, Coat, Distribution, Fresnel, Lobe, Material, MaterialI
 pub use mesh::{Emission, Mesh};
 pub use parameter::{Parameter, Reflectance, Roughness, Share};
 pub use pixel_filter::PixelFilter;
-pub use principled::{Principled, eta_of_specular};
+pub use principled::{Principled, Stretch, eta_of_specular};
 pub use projector::{FovAxis, Projector};
 pub use relief::Relief;
 pub use requirements::Requirements;

@@ -66,14 +66,15 @@ impl Material {
         std::iter::successors(Some(self), |material| material.blend.as_ref().map(|blend| &blend.other))
     }
 
-    /// Returns the angle from u in radians of the axis of anisotropy; `None` if isotropic.
+    /// Returns the angle from u in radians of the axis of anisotropy, and the texture of directions that replace u;
+    /// `None` if isotropic.
     ///
     /// In a mixture, the first anisotropic material counts.
-    pub fn anisotropy_angle(&self) -> Option<f32> {
+    pub fn anisotropy_axis(&self) -> Option<(f32, Option<TextureId>)> {
         self.parts().find_map(|part| {
-            let of_lobe = |lobe: &Lobe| matches!(lobe, Lobe::Anisotropic { .. }).then_some(0.0);
-            let principled = part.principled.as_ref().filter(|p| p.anisotropic != 0.0);
-            let of_principled = principled.map(|p| p.anisotropic_rotation);
+            let of_lobe = |lobe: &Lobe| matches!(lobe, Lobe::Anisotropic { .. }).then_some((0.0, None));
+            let principled = part.principled.as_ref().filter(|p| p.anisotropic != Share::Constant(0.0));
+            let of_principled = principled.map(|p| (p.anisotropic_rotation, p.anisotropic_direction));
             of_principled.or_else(|| part.lobes.iter().find_map(of_lobe))
         })
     }
@@ -107,8 +108,10 @@ impl Material {
     pub fn alphas_mut(&mut self) -> Vec<&mut Roughness> {
         let mut all = Vec::new();
         for lobe in &mut self.lobes {
-            if let Lobe::Rough { alpha, .. } | Lobe::RoughDielectric { alpha, .. } = lobe {
-                all.push(alpha);
+            match lobe {
+                Lobe::Rough { alpha, .. } | Lobe::RoughDielectric { alpha, .. } => all.push(alpha),
+                Lobe::Anisotropic { alpha, .. } => all.extend(alpha),
+                Lobe::Mirror { .. } | Lobe::Dielectric { .. } => {}
             }
         }
         all.extend(self.blend.iter_mut().flat_map(|blend| blend.other.alphas_mut()));
@@ -125,12 +128,16 @@ impl Material {
         all
     }
 
-    /// True if the roughness of a lobe is textured. A mixed-in material does not count.
+    /// True if the roughness of a lobe is textured, or its direction. A mixed-in material does not count.
     pub fn has_textured_roughness(&self) -> bool {
-        self.principled.as_ref().is_some_and(|principled| principled.roughness.is_textured())
+        let of_principled = |p: &Principled| {
+            p.roughness.is_textured() || p.anisotropic.is_textured() || p.anisotropic_direction.is_some()
+        };
+        self.principled.as_deref().is_some_and(of_principled)
             || self.lobes.iter().any(|lobe| match lobe {
                 Lobe::Rough { alpha, .. } | Lobe::RoughDielectric { alpha, .. } => alpha.is_textured(),
-                Lobe::Anisotropic { .. } | Lobe::Mirror { .. } | Lobe::Dielectric { .. } => false,
+                Lobe::Anisotropic { alpha, .. } => alpha.iter().any(Roughness::is_textured),
+                Lobe::Mirror { .. } | Lobe::Dielectric { .. } => false,
             })
     }
 
@@ -146,7 +153,10 @@ impl Material {
             || self.principled.as_ref().is_some_and(|principled| principled.is_textured())
             || self.lobes.iter().any(|lobe| match lobe {
                 Lobe::Rough { alpha, scale, .. } => alpha.is_textured() || scale.is_textured(),
-                Lobe::Anisotropic { scale, .. } | Lobe::Mirror { scale, .. } => scale.is_textured(),
+                Lobe::Anisotropic { alpha, scale, .. } => {
+                    alpha.iter().any(Roughness::is_textured) || scale.is_textured()
+                }
+                Lobe::Mirror { scale, .. } => scale.is_textured(),
                 Lobe::Dielectric { reflectance, transmittance, .. } => {
                     reflectance.is_textured() || transmittance.is_textured()
                 }
@@ -196,7 +206,7 @@ pub enum Lobe {
         /// Microfacet distribution.
         distribution: Distribution,
         /// Roughness α along u, and along v.
-        alpha: [f32; 2],
+        alpha: [Roughness; 2],
         /// Reflectance of a facet.
         fresnel: Fresnel,
         /// Factor on the lobe.

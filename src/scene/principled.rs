@@ -5,6 +5,7 @@
 //! Deviations: transmission is isotropic. Flatness, an approximation of subsurface scattering, is missing.
 
 use super::parameter::{Parameter, Reflectance, Share};
+use super::texture::TextureId;
 
 /// Diffuse base, specular reflection of a dielectric or a metal, transmission, sheen and clear coat.
 #[derive(Clone, Debug, PartialEq)]
@@ -16,13 +17,18 @@ pub struct Principled {
     pub metallic: Share,
     /// Square root of the microfacet α (GGX) of reflection and transmission.
     pub roughness: Share,
-    /// Anisotropy `a` from 0 to 1. Reflection has α / √(1 - 0.9 a) along u and α √(1 - 0.9 a) along v.
+    /// Anisotropy of reflection, from 0 to 1; see `stretch`.
     ///
     /// Without texture coordinates, u is any direction.
-    pub anisotropic: f32,
+    pub anisotropic: Share,
+    /// Effect of the anisotropy on the roughness along u and v.
+    pub stretch: Stretch,
     /// Angle in radians from u to the axis that replaces u. It is counter-clockwise seen from the front, if v is to the
     /// left of u.
     pub anisotropic_rotation: f32,
+    /// Texture of directions that replace u before the rotation. Red and green are the coordinates along u and v;
+    /// texels from 0 to 1 stand for coordinates from -1 to 1.
+    pub anisotropic_direction: Option<TextureId>,
     /// Interior over exterior index of refraction of the dielectric.
     ///
     /// A `specular` s of Mitsuba and Blender is η = 2 / (1 - √(0.08 s)) - 1.
@@ -50,6 +56,29 @@ pub struct Principled {
     pub thin: Option<Share>,
 }
 
+/// Effect of an anisotropy `a` on microfacets of roughness α.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Stretch {
+    /// α / √(1 - 0.9 a) along u and α √(1 - 0.9 a) along v, as in Burley's model.
+    #[default]
+    AboutMean,
+    /// α + (1 - α) a² along u and α along v, as in glTF.
+    AlongU,
+}
+
+impl Stretch {
+    /// Returns the roughness along u and along v.
+    pub fn alphas(self, alpha: f32, anisotropy: f32) -> [f32; 2] {
+        match self {
+            Stretch::AboutMean => {
+                let aspect = (1.0 - 0.9 * anisotropy).sqrt();
+                [alpha / aspect, alpha * aspect]
+            }
+            Stretch::AlongU => [alpha + (1.0 - alpha) * anisotropy * anisotropy, alpha],
+        }
+    }
+}
+
 /// Returns the index of refraction for `specular` of Mitsuba and Blender.
 pub fn eta_of_specular(specular: f64) -> f32 {
     (2.0 / (1.0 - (0.08 * specular.max(0.0)).sqrt()) - 1.0) as f32
@@ -63,8 +92,10 @@ impl Default for Principled {
             base_color: Reflectance::Constant(base::math::Rgb::splat(0.5)),
             metallic: none,
             roughness: Share::Constant(0.5),
-            anisotropic: 0.0,
+            anisotropic: none,
+            stretch: Stretch::default(),
             anisotropic_rotation: 0.0,
+            anisotropic_direction: None,
             eta: 1.5,
             spec_tint: none,
             spec_trans: none,
@@ -80,10 +111,11 @@ impl Default for Principled {
 
 impl Principled {
     /// Returns every share.
-    pub fn shares_mut(&mut self) -> [&mut Share; 7] {
+    pub fn shares_mut(&mut self) -> [&mut Share; 8] {
         [
             &mut self.metallic,
             &mut self.roughness,
+            &mut self.anisotropic,
             &mut self.spec_tint,
             &mut self.spec_trans,
             &mut self.sheen,
@@ -96,7 +128,7 @@ impl Principled {
     pub fn is_textured(&self) -> bool {
         let shares = [self.metallic, self.roughness, self.spec_tint, self.spec_trans, self.sheen]
             .into_iter()
-            .chain([self.sheen_tint, self.clearcoat])
+            .chain([self.sheen_tint, self.clearcoat, self.anisotropic])
             .chain(self.thin);
         self.base_color.is_textured()
             || shares.into_iter().any(|share| matches!(share, Parameter::Textured { .. }))

@@ -3,7 +3,7 @@
 //! A stage that a scene does not require is not built.
 
 use super::material::{Lobe, Material};
-use super::parameter::Reflectance;
+use super::parameter::{Reflectance, Roughness};
 use super::{DeltaLight, Environment, Scene};
 use glam::DVec3;
 use serde::Serialize;
@@ -186,11 +186,11 @@ impl Requirements {
         };
         *kind += 1;
         for lobe in &material.lobes {
+            let least =
+                |alpha: &Roughness| alpha.value(|id| scene.luminance_range(id).map_or(1.0, |(low, _)| low));
             let alpha = match lobe {
-                Lobe::Rough { alpha, .. } | Lobe::RoughDielectric { alpha, .. } => {
-                    alpha.value(|id| scene.luminance_range(id).map_or(1.0, |(low, _)| low))
-                }
-                Lobe::Anisotropic { alpha: [u, v], .. } => u.min(*v),
+                Lobe::Rough { alpha, .. } | Lobe::RoughDielectric { alpha, .. } => least(alpha),
+                Lobe::Anisotropic { alpha: [u, v], .. } => least(u).min(least(v)),
                 Lobe::Mirror { .. } | Lobe::Dielectric { .. } => continue,
             };
             self.smallest_alpha = Some(self.smallest_alpha.map_or(alpha, |a| a.min(alpha)));

@@ -6,9 +6,9 @@
 //! from behind if its turned normal faces away from the eye.
 
 use super::triangle::Triangle;
-use base::math::Frame;
+use base::math::{Frame, Rgb};
 use glam::{Vec2, Vec3};
-use scene::{Mesh, Relief, Scene, Textures};
+use scene::{Mesh, Relief, Scene, TextureId, Textures};
 
 /// Reliefs of a scene.
 pub(super) struct Reliefs {
@@ -23,6 +23,8 @@ struct Turn {
     relief: Option<Relief>,
     /// Angle from u to the x axis, in radians, if the material is anisotropic.
     from_u: Option<f32>,
+    /// Texture of directions that replace u.
+    direction: Option<TextureId>,
 }
 
 impl Reliefs {
@@ -32,8 +34,9 @@ impl Reliefs {
             let material = scene.materials.get(mesh.material.0 as usize);
             material.map_or(Turn::default(), |material| {
                 let has_direction = !(mesh.uvs.is_empty() && mesh.tangents.is_empty());
-                let from_u = material.anisotropy_angle().filter(|_| has_direction);
-                Turn { relief: material.relief, from_u }
+                let from_u = material.anisotropy_axis().filter(|_| has_direction);
+                let direction = from_u.and_then(|(_, direction)| direction);
+                Turn { relief: material.relief, from_u: from_u.map(|(angle, _)| angle), direction }
             })
         };
         let turns: Vec<Turn> = scene.meshes.iter().map(of).collect();
@@ -45,7 +48,7 @@ impl Reliefs {
     /// `index`, and turns x to the direction that its material asks for.
     #[inline]
     pub fn turn(&self, frame: &mut Frame, index: u32, mesh: &Mesh, triangle: &Triangle, b: Vec2) {
-        let Turn { relief, from_u } = &self.turns[index as usize];
+        let Turn { relief, from_u, direction } = &self.turns[index as usize];
         if let Some(relief) = relief {
             let normal = frame.normal;
             let turned = self.normal(relief, mesh, triangle, b, normal);
@@ -54,13 +57,24 @@ impl Reliefs {
         if let Some(angle) = from_u {
             let [along_u, along_v] = axes(mesh, triangle, b, frame.normal);
             *frame = Frame::from_normal_and_tangent(frame.normal, along_u);
-            if *angle != 0.0 {
+            let angle = match direction {
+                Some(texture) => angle + self.angle(*texture, mesh.uv(&triangle.vertices, b)),
+                None => *angle,
+            };
+            if angle != 0.0 {
                 let (sin, cos) = angle.sin_cos();
                 let sin = if frame.bitangent.dot(along_v) < 0.0 { -sin } else { sin };
                 let turned = frame.tangent * cos + frame.bitangent * sin;
                 *frame = Frame::from_normal_and_tangent(frame.normal, turned);
             }
         }
+    }
+
+    /// Returns the angle from u of the direction that a texture gives at `uv`; 0 if it gives none.
+    fn angle(&self, texture: TextureId, uv: Vec2) -> f32 {
+        let texel = self.textures.by_id(texture).map_or(Rgb::splat(0.5), |texture| texture.lookup(uv));
+        let (x, y) = (2.0 * texel.x - 1.0, 2.0 * texel.y - 1.0);
+        y.atan2(x)
     }
 
     /// Returns the normal of a relief on a surface of shading normal `normal`, not of unit length; `None` if its
@@ -199,7 +213,7 @@ mod tests {
             let mut staged = staged(square(bumps, 2, vec![Rgb::ZERO, Rgb::ONE]));
             staged.materials[0].relief = relief;
             let fresnel = Fresnel::One;
-            let (distribution, alpha, scale) = (Distribution::Ggx, [0.1, 0.3], Rgb::ONE.into());
+            let (distribution, alpha, scale) = (Distribution::Ggx, [0.1.into(), 0.3.into()], Rgb::ONE.into());
             staged.materials[0].lobes = vec![Lobe::Anisotropic { distribution, alpha, fresnel, scale }];
             // u grows across the square, from corner to corner.
             staged.meshes[0].uvs.iter_mut().for_each(|uv| *uv = Vec2::new(uv.x + uv.y, uv.y - uv.x));
@@ -220,7 +234,8 @@ mod tests {
         for mirrored in [1.0, -1.0] {
             let mut staged = staged(square(flat, 1, vec![Rgb::ZERO]));
             staged.materials[0].relief = None;
-            let brushed = Principled { anisotropic: 0.5, anisotropic_rotation: 0.5, ..Principled::default() };
+            let brushed =
+                Principled { anisotropic: 0.5.into(), anisotropic_rotation: 0.5, ..Principled::default() };
             staged.materials[0].principled = Some(Box::new(brushed));
             staged.meshes[0].uvs.iter_mut().for_each(|uv| uv.y *= mirrored);
             let world = world(staged);
@@ -229,6 +244,27 @@ mod tests {
             let expected = Vec3::new(0.5f32.cos(), mirrored * 0.5f32.sin(), 0.0);
             assert!((frame.tangent - expected).length() < 1e-5, "{frame:?}");
         }
+    }
+
+    #[test]
+    fn textures_of_directions_turn_frames_before_the_angle_does() {
+        let flat = Relief::Heights { texture: TextureId(0), scale: 0.0 };
+        // The direction (0.6, 0.8), as texels from 0 to 1; blue is the strength.
+        let mut staged = staged(square(flat, 1, vec![Rgb::new(0.8, 0.9, 0.1)]));
+        staged.materials[0].relief = None;
+        let brushed = Principled {
+            anisotropic: 0.5.into(),
+            anisotropic_rotation: 0.5,
+            anisotropic_direction: Some(TextureId(0)),
+            ..Principled::default()
+        };
+        staged.materials[0].principled = Some(Box::new(brushed));
+        let world = world(staged);
+        let ray = Ray::new(Vec3::new(0.6, 0.5, 1.0), -Vec3::Z);
+        let frame = world.intersect(&ray).expect("the square").frame;
+        let angle = 0.5 + 0.8f32.atan2(0.6);
+        assert!((frame.tangent - Vec3::new(angle.cos(), angle.sin(), 0.0)).length() < 1e-5, "{frame:?}");
+        normal(&world, 0.6, 0.5);
     }
 
     #[test]
@@ -246,7 +282,8 @@ mod tests {
             // Anisotropy turns from x to y, with texture coordinates or without.
             let mut brushed =
                 staged(square(Relief::Heights { texture: TextureId(0), scale: 0.0 }, 1, vec![Rgb::ZERO]));
-            let lobe = Principled { anisotropic: 0.5, anisotropic_rotation: 0.5, ..Principled::default() };
+            let lobe =
+                Principled { anisotropic: 0.5.into(), anisotropic_rotation: 0.5, ..Principled::default() };
             brushed.materials[0].relief = None;
             brushed.materials[0].principled = Some(Box::new(lobe));
             brushed.meshes[0].tangents = tangents;

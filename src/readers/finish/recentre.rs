@@ -12,8 +12,8 @@ use crate::draft::{Draft, DraftCamera, DraftMesh};
 use base::math::Rgb;
 use glam::{DVec3, Vec3};
 use scene::{
-    Attribute, AttributeId, Camera, Cameras, DeltaLight, MAX_RATIO, Material, Mesh, Projection, Projector, Relief,
-    Scene,
+    Attribute, AttributeId, Camera, Cameras, DeltaLight, MAX_RATIO, Material, Mesh, Projection, Projector,
+    Relief, Scene,
 };
 
 /// Approximate number of corners that are sampled to compute the vicinity.

@@ -180,7 +180,7 @@ impl Importer<'_> {
     fn has_direction(&self, appearance: Appearance) -> bool {
         let material = self.options.material.unwrap_or(appearance.material);
         self.contents.materials.get(material.0 as usize).is_some_and(|material| {
-            matches!(material.relief, Some(Relief::Normals { .. })) || material.anisotropy_angle().is_some()
+            matches!(material.relief, Some(Relief::Normals { .. })) || material.anisotropy_axis().is_some()
         })
     }
 

@@ -18,18 +18,13 @@ use gltf_json::extensions::material::Material as Extensions;
 use gltf_json::material::{AlphaMode, Material as Source};
 use gltf_json::texture::Info;
 use gltf_json::validation::Checked;
-use scene::{Emission, Lobe, Material, Principled, Reflectance, Relief, Share};
+use scene::{Emission, Lobe, Material, Principled, Reflectance, Relief, Share, Stretch};
 use serde_json::Value;
 
 /// Extensions that are read from their JSON.
 const RAW: [&str; 3] = ["KHR_materials_clearcoat", "KHR_materials_sheen", "KHR_materials_anisotropy"];
 /// Roughness up to which glass is smooth.
 const MAX_SMOOTH: f32 = 0.03;
-
-/// Minimum roughness α across an anisotropic lobe.
-const MIN_ALPHA: f32 = 1e-3;
-/// Factor c of the principled material: the ratio of α across to α along is 1 - c · anisotropy.
-const ANISOTROPY_TO_SQUARE: f32 = 0.9;
 
 const RED: Channel = Channel::One(0);
 const GREEN: Channel = Channel::One(1);
@@ -220,37 +215,31 @@ impl Importer<'_> {
             );
         }
         if let Some(anisotropy) = anisotropy {
-            self.stretch(anisotropy, principled, name);
+            self.stretch(anisotropy, principled, name)?;
         }
         Ok(())
     }
 
     /// Reads anisotropy: α along the extension's direction is α + (1 - α) strength².
-    fn stretch(&mut self, anisotropy: &Value, principled: &mut Principled, name: &str) {
+    fn stretch(
+        &mut self,
+        anisotropy: &Value,
+        principled: &mut Principled,
+        name: &str,
+    ) -> Result<(), SceneError> {
         let strength = number(anisotropy, "anisotropyStrength").unwrap_or(0.0).clamp(0.0, 1.0);
         if !(strength > 0.0) {
-            return;
+            return Ok(());
         }
-        if anisotropy.get("anisotropyTexture").is_some() {
-            let fallback = "its strength and rotation are the same everywhere";
-            self.report.lacks("anisotropyTexture is not modelled", fallback, name);
+        let texture = slot(anisotropy, "anisotropyTexture");
+        principled.stretch = Stretch::AlongU;
+        principled.anisotropic = self.share(strength, texture.as_ref(), BLUE, name)?;
+        if let Some(info) = &texture {
+            principled.anisotropic_direction = self.texture(&TextureUse::of(info), Channel::Data, name)?;
         }
-        let Share::Constant(roughness) = principled.roughness else {
-            let what = "anisotropic roughness that is textured is not modelled";
-            self.report.lacks(what, "it is isotropic", name);
-            return;
-        };
-        let across = (roughness * roughness).max(MIN_ALPHA);
-        let along = across + (1.0 - across) * strength * strength;
-        let wanted = (1.0 - across / along) / ANISOTROPY_TO_SQUARE;
-        if wanted > 1.0 {
-            let what = "anisotropic roughness that differs by more than ten times";
-            self.report.lacks(what, "it differs by ten times about its mean", name);
-        }
-        principled.anisotropic = wanted.min(1.0);
-        principled.roughness = Share::Constant((along * across).sqrt().sqrt());
         let rotation = number(anisotropy, "anisotropyRotation").unwrap_or(0.0);
         principled.anisotropic_rotation = if rotation.is_finite() { rotation } else { 0.0 };
+        Ok(())
     }
 
     /// Returns a factor from 0 to 1, times a channel of a texture.

@@ -74,6 +74,11 @@ impl Converter<'_> {
                     self.log.warn(&bsdf.place, "anisotropic glass is not modelled", fallback)?;
                     Roughness::Constant((a * b).sqrt())
                 }
+                (u, v) if u != v => {
+                    let fallback = "its roughness along u is used both ways";
+                    self.log.warn(&bsdf.place, "anisotropic glass is not modelled", fallback)?;
+                    u
+                }
                 _ => u,
             };
             let lobe = Lobe::RoughDielectric { distribution, alpha, eta, reflectance, transmittance };
@@ -128,13 +133,7 @@ impl Converter<'_> {
                 0.5
             }
         };
-        principled.anisotropic = match self.share(bsdf, "anisotropic", 0.0)? {
-            Share::Constant(anisotropic) => anisotropic,
-            Share::Textured { .. } => {
-                self.log.warn(&bsdf.place, "a textured anisotropic is not modelled", "it is left out")?;
-                0.0
-            }
-        };
+        principled.anisotropic = self.share(bsdf, "anisotropic", 0.0)?;
         if self.share(bsdf, "flatness", 0.0)? != Share::Constant(0.0) {
             self.log.warn(&bsdf.place, "flatness is not modelled", "it is left out")?;
         }
@@ -149,14 +148,12 @@ impl Converter<'_> {
     ) -> Result<Lobe, SceneError> {
         let (distribution, alpha) = self.facets(bsdf)?;
         Ok(match alpha {
-            [Roughness::Constant(u), Roughness::Constant(v)] if u != v => {
-                Lobe::Anisotropic { distribution, alpha: [u, v], fresnel, scale }
-            }
+            [u, v] if u != v => Lobe::Anisotropic { distribution, alpha, fresnel, scale },
             [alpha, _] => Lobe::Rough { distribution, alpha, fresnel, scale },
         })
     }
 
-    /// Returns the distribution of microfacets, and their roughness along u and v. Both are equal if textured.
+    /// Returns the distribution of microfacets, and their roughness along u and v.
     pub(super) fn facets(&mut self, bsdf: &Object) -> Result<(Distribution, [Roughness; 2]), SceneError> {
         let distribution = match bsdf.string("distribution")?.map(|d| d.to_lowercase()).as_deref() {
             None | Some("beckmann") => Distribution::Beckmann,
@@ -172,15 +169,7 @@ impl Converter<'_> {
             }
         };
         let alpha = if bsdf.has("alpha_u") || bsdf.has("alpha_v") {
-            let (u, v) = (self.alpha(bsdf, "alpha_u")?, self.alpha(bsdf, "alpha_v")?);
-            let is_constant = |alpha| matches!(alpha, Roughness::Constant(_));
-            if u == v || is_constant(u) && is_constant(v) {
-                [u, v]
-            } else {
-                let what = "textured anisotropic roughness is not modelled";
-                self.log.warn(&bsdf.place, what, "that along u is used both ways")?;
-                [u, u]
-            }
+            [self.alpha(bsdf, "alpha_u")?, self.alpha(bsdf, "alpha_v")?]
         } else {
             [self.alpha(bsdf, "alpha")?; 2]
         };

@@ -259,7 +259,7 @@ impl<'b, 'a> LibraryReader<'b, 'a> {
             sheen: self.share(source, "map_Ps", "Ps", 0.0)?,
             clearcoat: self.share(source, "map_Pc", "Pc", 0.0)?,
             clearcoat_gloss: ((0.1 - coat_alpha) / 0.099).clamp(0.0, 1.0),
-            anisotropic,
+            anisotropic: anisotropic.into(),
             anisotropic_rotation: source.principled.get("anisor").map_or(0.0, |turns| turns * TURN),
             spec_trans: Share::Constant(spec_trans),
             eta,

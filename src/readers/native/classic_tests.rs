@@ -210,7 +210,7 @@ Pc 1
 Pcr 0.2",
     );
     assert!((satin.clearcoat_gloss - (0.1 - 0.04) / 0.099).abs() < 1e-6, "{satin:?}");
-    assert_eq!(brass.anisotropic, 0.5);
+    assert_eq!(brass.anisotropic, 0.5.into());
     assert!((brass.anisotropic_rotation - std::f32::consts::FRAC_PI_2).abs() < 1e-6);
     // Without the extension, Ka is the share of metal and Ns the roughness.
     let plain =

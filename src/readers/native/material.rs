@@ -197,22 +197,17 @@ impl SceneBuilder<'_> {
         place: &Location,
     ) -> Result<Lobe, SceneError> {
         let (distribution, alpha) = self.facets(text, place)?;
-        let Some(Number(across)) = text.alpha_v else {
+        let Some(across) = text.alpha_v.clone() else {
             return Ok(Lobe::Rough { distribution, alpha, fresnel, scale });
         };
-        match alpha {
-            Roughness::Constant(along) if across > 0.0 && across <= 4.0 => {
-                Ok(Lobe::Anisotropic { distribution, alpha: [along, across as f32], fresnel, scale })
-            }
-            Roughness::Constant(_) => {
-                let what = format!("the roughness of \"{}\" along v is {across}", text.name);
-                Err(place.wrong(what, "give a number above 0, usually up to 1"))
-            }
-            Roughness::Textured { .. } => {
-                let what = format!("the roughness of \"{}\" is textured and anisotropic", text.name);
-                Err(place.wrong(what, "leave out alpha_v, or give alpha as a number"))
-            }
+        if let NumberText::Number(Number(across)) = across
+            && !(across > 0.0 && across <= 4.0)
+        {
+            let what = format!("the roughness of \"{}\" along v is {across}", text.name);
+            return Err(place.wrong(what, "give a number above 0, usually up to 1"));
         }
+        let alpha = [alpha, self.share(across, place)];
+        Ok(Lobe::Anisotropic { distribution, alpha, fresnel, scale })
     }
 
     /// Returns the distribution and the roughness of microfacets.
@@ -257,8 +252,7 @@ impl SceneBuilder<'_> {
             base_color,
             metallic: share(&text.metallic, 0.0),
             roughness: share(&text.roughness, 0.5),
-            anisotropic: text.anisotropic.map_or(0.0, f64::from) as f32,
-            anisotropic_rotation: 0.0,
+            anisotropic: share(&text.anisotropic, 0.0),
             eta: index_of_refraction(text),
             spec_tint: share(&text.spec_tint, 0.0),
             spec_trans: share(&text.spec_trans, 0.0),
@@ -267,7 +261,7 @@ impl SceneBuilder<'_> {
             sheen_tint: share(&text.sheen_tint, 0.0),
             clearcoat: share(&text.clearcoat, 0.0),
             clearcoat_gloss: text.clearcoat_gloss.map_or(0.0, f64::from) as f32,
-            thin: None,
+            ..Principled::default()
         })
     }
 

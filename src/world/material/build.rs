@@ -6,7 +6,7 @@ use super::layers::Layers;
 use super::lobe::{DIFFUSE_ALPHA, LobeModel, MAX_LOBES};
 use super::means::TextureMeans;
 use super::model::{Bsdf, Colours, LobeKinds, Model};
-use super::roughness::{RoughnessLevel, RoughnessLevels, RoughnessValues};
+use super::roughness::{LevelPair, RoughnessLevels, RoughnessValues};
 use super::straight::Straight;
 use super::tables::Tables;
 use base::math::Rgb;
@@ -23,6 +23,10 @@ pub(super) struct MaterialEntry {
     pub levels: Option<ModelLevels>,
     /// Lobes that light passes straight, if there are any and nothing is textured.
     pub straight: Option<Straight>,
+    /// True if no model scatters light by mirrors, glass or gaps.
+    pub only_densities: bool,
+    /// Minimum roughness α of the rough lobes of all models; 1 without one.
+    pub min_alpha: f32,
     /// Share of the surface that is there, if gaps are all that light passes straight and something is textured.
     pub opacity: Option<Share>,
     /// Texture that a lookup reads first, if any.
@@ -109,17 +113,26 @@ impl<'a> Builder<'a> {
             && has_one_textured_factor(material)
             && !textures.iter().any(is_product);
         let first_texture = match &levels {
-            Some(levels) => Some(levels.texture),
+            Some(levels) => Some(levels.first_texture()),
             None => textures.first().copied(),
         };
         let colours = match is_textured {
             true => Colouring::Textured(source),
             false => Colouring::Constant(average),
         };
+        let levels = levels.map(|levels| self.levels(material, id, levels));
+        let models = || {
+            let of_levels = levels.iter().flat_map(|levels| &levels.models);
+            of_levels.map(|level| &level.model).chain([&model])
+        };
+        let only_densities = models().all(|model| !model.kinds.delta && !model.kinds.pass_light);
+        let min_alpha = models().map(|model| model.min_alpha).fold(1.0, f32::min);
         MaterialEntry {
             coloured: ColouredModel { model, colours },
             average,
-            levels: levels.map(|levels| self.levels(material, id, levels)),
+            levels,
+            only_densities,
+            min_alpha,
             straight,
             opacity,
             first_texture,
@@ -130,14 +143,14 @@ impl<'a> Builder<'a> {
     /// Builds the models of a material by level of its roughness.
     fn levels(&mut self, material: &Material, id: MaterialId, levels: RoughnessLevels) -> ModelLevels {
         let coloured = |level| {
-            let (model, source) = self.model(material, id, Some((levels.texture, level)));
+            let (model, source) = self.model(material, id, Some(level));
             let colours = match source.is_textured() {
                 true => Colouring::Textured(source),
                 false => Colouring::Constant(source.colours(&model.base, &|_| Rgb::ONE)),
             };
             ColouredModel { model, colours }
         };
-        let models = levels.all().map(coloured).collect();
+        let models: Vec<ColouredModel> = levels.all().map(coloured).collect();
         ModelLevels { levels, models }
     }
 
@@ -146,15 +159,15 @@ impl<'a> Builder<'a> {
         &mut self,
         material: &Material,
         id: MaterialId,
-        level: Option<(TextureId, RoughnessLevel)>,
+        levels: Option<LevelPair>,
     ) -> (Model, ColourSource) {
         let most = MAX_LOBES - usize::from(material.opacity.is_some());
-        let roughness = RoughnessValues { means: &self.means, level };
+        let roughness = RoughnessValues { means: &self.means, levels: levels.as_ref() };
         let Layers { colours, base, black, coated, mut lobes } =
             Layers::new(material, roughness, most, &mut self.tables);
         let bare = !black && !coated;
         let needs_albedo = bare || lobes.len() > 1 || material.parts().any(|part| part.principled.is_some());
-        self.tabulate(&mut lobes, needs_albedo);
+        self.tabulate(&mut lobes, needs_albedo, levels.is_some());
         let opacity = material.opacity.map(|opacity| (opacity, lobes.len()));
         lobes.extend(opacity.map(|_| LobeModel::Gap));
         let model = Model {
@@ -172,9 +185,13 @@ impl<'a> Builder<'a> {
         (model, ColourSource { layers: colours, opacity })
     }
 
-    /// Adds the tables of albedo to rough lobes: to all if `needed`, else to those that count as diffuse.
-    fn tabulate(&mut self, lobes: &mut [LobeModel], needed: bool) {
+    /// Adds the tables of albedo to rough lobes: to all if `needed`, else to those that count as diffuse. `is_level` is
+    /// true if the lobes are those of a level of a textured roughness.
+    fn tabulate(&mut self, lobes: &mut [LobeModel], needed: bool, is_level: bool) {
         for lobe in lobes {
+            if let LobeModel::Anisotropic(rough) = lobe {
+                rough.albedo = self.tables.anisotropic_albedo(rough, is_level);
+            }
             let LobeModel::Rough(rough) = lobe else { continue };
             if needed || rough.facets.alpha >= DIFFUSE_ALPHA {
                 rough.albedo = Some(self.tables.albedo(rough.facets, rough.fresnel));

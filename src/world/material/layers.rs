@@ -28,7 +28,7 @@ impl Layers {
     pub fn new(material: &Material, roughness: RoughnessValues, most: usize, tables: &mut Tables) -> Layers {
         let first = match &material.principled {
             Some(principled) => {
-                let (colours, lobes) = PrincipledColours::new(principled, roughness, most);
+                let (colours, lobes) = PrincipledColours::new(principled, roughness, most, tables);
                 let base = BaseModel::new(None, CoatInterface::Burley);
                 let colours = LayerColours::Principled(colours);
                 Layers { colours, base, black: false, coated: true, lobes }
@@ -74,7 +74,7 @@ impl Layers {
         let coat = material.coat.filter(|_| !black);
         let coat_facets = material.lobes.iter().find_map(|lobe| match lobe {
             Lobe::Rough { distribution, alpha, .. } => {
-                Some(Microfacets::new(*distribution, roughness.of_coat().alpha(alpha)))
+                Some(Microfacets::new(*distribution, roughness.alpha_of_coat(alpha)))
             }
             _ => None,
         });
@@ -97,6 +97,7 @@ fn models(lobe: &Lobe, roughness: &RoughnessValues) -> Vec<(LobeModel, Reflectan
             vec![(LobeModel::Rough(RoughLobe::new(facets, fresnel)), scale)]
         }
         Lobe::Anisotropic { distribution, alpha, fresnel, scale } => {
+            let alpha = alpha.map(|alpha| roughness.alpha(&alpha));
             vec![(LobeModel::Anisotropic(AnisotropicLobe::new(distribution, alpha, fresnel)), scale)]
         }
         Lobe::Mirror { fresnel, scale } => vec![(LobeModel::Mirror(Mirror { fresnel }), scale)],

@@ -2,7 +2,7 @@
 
 use super::base::CoatInterface;
 use super::build::{Builder, Colouring, MaterialEntry};
-use super::model::{Bsdf, Model};
+use super::model::Bsdf;
 use super::straight::LastStraight;
 use base::math::{Rgb, luminance};
 use glam::Vec2;
@@ -52,18 +52,13 @@ impl Materials {
     /// Returns true if a material scatters light by densities alone: by no mirrors, no glass and no gaps.
     #[inline]
     pub fn has_only_densities(&self, id: MaterialId) -> bool {
-        let by_densities = |model: &Model| !model.kinds.delta && !model.kinds.pass_light;
-        let entry = &self.entries[id.0 as usize];
-        by_densities(&entry.coloured.model)
-            && entry.levels.iter().flat_map(|levels| &levels.models).all(|level| by_densities(&level.model))
+        self.entries[id.0 as usize].only_densities
     }
 
     /// Returns the minimum roughness α of the rough lobes of a material; 1 without one.
     #[inline]
     pub fn min_alpha(&self, id: MaterialId) -> f32 {
-        let entry = &self.entries[id.0 as usize];
-        let levels = entry.levels.iter().flat_map(|levels| &levels.models);
-        levels.map(|level| level.model.min_alpha).fold(entry.coloured.model.min_alpha, f32::min)
+        self.entries[id.0 as usize].min_alpha
     }
 
     /// Returns a material that is the same everywhere; `None` if something of it is textured.
@@ -137,7 +132,7 @@ impl Materials {
     ) -> Bsdf<'m> {
         let texel = |id: TextureId| self.textures.lookup(id, uv, covered, &attribute);
         let coloured = match &entry.levels {
-            Some(levels) => &levels.models[levels.levels.index(luminance(texel(levels.levels.texture)))],
+            Some(levels) => &levels.models[levels.levels.index(|id| luminance(texel(id)))],
             None => &entry.coloured,
         };
         coloured.bsdf(&texel)

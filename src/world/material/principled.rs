@@ -10,6 +10,7 @@ use super::lobe::{
 use super::microfacet::Microfacets;
 use super::model::Colours;
 use super::roughness::RoughnessValues;
+use super::tables::Tables;
 use base::math::{Rgb, luminance};
 use scene::{Distribution, Fresnel, Principled, Share, TextureId};
 
@@ -140,12 +141,14 @@ struct LobeBuilder<'a> {
     parameters: &'a Principled,
     /// Square root of α.
     roughness: f32,
+    /// See [`Principled::anisotropic`].
+    anisotropy: f32,
     facets: Microfacets,
 }
 
 impl LobeBuilder<'_> {
     /// Builds all lobes. Most lack their tables of albedo.
-    fn all(&self) -> Vec<(PrincipledLobe, LobeModel)> {
+    fn all(&self, tables: &mut Tables) -> Vec<(PrincipledLobe, LobeModel)> {
         let p = self.parameters;
         if let Some(transmitted) = p.thin {
             return self.of_sheet(transmitted);
@@ -157,8 +160,7 @@ impl LobeBuilder<'_> {
             all.push((PrincipledLobe::Inside, self.interface(Passage::Reflection, true)));
         }
         if is_dielectric && not_all(p.spec_trans) {
-            let kind = GrazingKind::Retro { roughness: self.roughness };
-            all.push((PrincipledLobe::Retro, LobeModel::Grazing(Grazing::new(kind))));
+            all.push((PrincipledLobe::Retro, LobeModel::Grazing(tables.retro(self.roughness))));
         }
         if some(p.clearcoat) {
             all.push((PrincipledLobe::ClearCoat, LobeModel::ClearCoat(ClearCoat::new(p.clearcoat_gloss))));
@@ -226,9 +228,11 @@ impl LobeBuilder<'_> {
 
     /// Returns the roughness α along u and along v, if they differ.
     fn brushed(&self) -> Option<[f32; 2]> {
-        let (anisotropic, alpha) = (self.parameters.anisotropic, self.facets.alpha);
-        let aspect = (1.0 - 0.9 * anisotropic).sqrt();
-        (anisotropic != 0.0).then(|| [alpha / aspect, alpha * aspect].map(|alpha| alpha.max(MIN_ALPHA)))
+        if self.parameters.anisotropic == Share::Constant(0.0) {
+            return None;
+        }
+        let alpha = self.parameters.stretch.alphas(self.facets.alpha, self.anisotropy);
+        Some(alpha.map(|alpha| alpha.max(MIN_ALPHA)))
     }
 
     /// Builds a lobe of microfacet reflection.
@@ -264,10 +268,12 @@ impl PrincipledColours {
         parameters: &Principled,
         roughness: RoughnessValues,
         most: usize,
+        tables: &mut Tables,
     ) -> (PrincipledColours, Vec<LobeModel>) {
+        let anisotropy = roughness.alpha(&parameters.anisotropic).clamp(0.0, 1.0);
         let roughness = roughness.alpha(&parameters.roughness);
         let facets = Microfacets::new(Distribution::Ggx, (roughness * roughness).max(MIN_ALPHA));
-        let mut all = LobeBuilder { parameters, roughness, facets }.all();
+        let mut all = LobeBuilder { parameters, roughness, anisotropy, facets }.all(tables);
         all.truncate(most);
         let (kinds, lobes) = all.into_iter().unzip();
         (PrincipledColours { parameters: Box::new(parameters.clone()), lobes: kinds }, lobes)
@@ -276,7 +282,7 @@ impl PrincipledColours {
     /// Returns true if any colour is textured.
     pub fn is_textured(&self) -> bool {
         let mut colours = self.parameters.clone();
-        colours.roughness = Share::Constant(0.0);
+        (colours.roughness, colours.anisotropic) = (Share::Constant(0.0), Share::Constant(0.0));
         colours.is_textured()
     }
 

@@ -2,8 +2,10 @@
 //! and a constant roughness costs nothing more.
 //!
 //! Deviations: a level represents values within 1.1 % of its own. This is less than half a step of an 8-bit image at
-//! 0.5 in a texture of α², or at 0.18 in a texture of α. The tables of the coat are made for every eighth level. Values
-//! below 1/1024 are clamped to it. The roughness of other lobes is the mean of its texture.
+//! 0.5 in a texture of α², or at 0.18 in a texture of α. Where two textures give the roughness along u and v, or
+//! roughness and anisotropy, there is a model for each pair of levels. Levels are then up to 4.4 % off, or more where
+//! that takes more than 2048 models. The tables of the coat are made for every eighth level. Values below
+//! 1/1024 are clamped to it. The roughness of other lobes is the mean of its texture.
 
 use super::means::TextureMeans;
 use base::math::luminance;
@@ -18,6 +20,12 @@ const COAT_STEP: i32 = 8;
 
 /// Level of the smallest value that is told apart, 2^-10.
 const MIN_LEVEL: i32 = -10 * LEVELS_PER_OCTAVE;
+
+/// Maximum number of pairs of levels.
+const MAX_PAIRS: usize = 2048;
+
+/// Minimum distance of the levels in pairs.
+const MIN_STEP: i32 = 4;
 
 /// Values of a texture that count as one roughness.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -40,74 +48,179 @@ impl RoughnessLevel {
     }
 }
 
-/// Levels of a material's textured roughness.
+/// Levels of one texture.
 #[derive(Clone, Debug)]
-pub(super) struct RoughnessLevels {
-    /// Texture of the roughness.
-    pub texture: TextureId,
+struct TextureLevels {
+    texture: TextureId,
+    /// Lowest and highest level of the texture's values.
     range: RangeInclusive<i32>,
+    /// Distance of levels that have models, and their number.
+    step: i32,
+    count: usize,
 }
 
-impl RoughnessLevels {
-    /// Returns the levels of the first textured roughness of `material`, if there is any.
-    pub fn of(material: &Material, scene: &Scene) -> Option<RoughnessLevels> {
-        let textured = |roughness: &Roughness| match roughness {
-            Roughness::Textured { texture, .. } => Some(*texture),
-            Roughness::Constant(_) => None,
-        };
-        let of_lobe = |lobe: &Lobe| match lobe {
-            Lobe::Rough { alpha, .. } | Lobe::RoughDielectric { alpha, .. } => textured(alpha),
-            Lobe::Anisotropic { .. } | Lobe::Mirror { .. } | Lobe::Dielectric { .. } => None,
-        };
-        let of_part = |part: &Material| match &part.principled {
-            Some(principled) => textured(&principled.roughness),
-            None => part.lobes.iter().find_map(of_lobe),
-        };
-        let texture = material.parts().find_map(of_part)?;
+impl TextureLevels {
+    /// Returns the levels of a texture; `None` if there is no such texture.
+    fn of(texture: TextureId, scene: &Scene) -> Option<TextureLevels> {
         let Some(image) = scene.textures.by_id(texture) else {
             let (low, high) = scene.luminance_range(texture)?;
-            return Some(RoughnessLevels {
-                texture,
-                range: RoughnessLevel::of(low).0..=RoughnessLevel::of(high).0,
-            });
+            let range = RoughnessLevel::of(low).0..=RoughnessLevel::of(high).0;
+            return Some(TextureLevels { texture, range, step: 1, count: 0 }.at_steps_of(1));
         };
         let levels = || image.texels.iter().map(|texel| RoughnessLevel::of(luminance(texel)).0);
-        Some(RoughnessLevels { texture, range: levels().min()?..=levels().max()? })
+        let range = levels().min()?..=levels().max()?;
+        Some(TextureLevels { texture, range, step: 1, count: 0 }.at_steps_of(1))
     }
 
-    /// Lists all levels in ascending order.
-    pub fn all(&self) -> impl Iterator<Item = RoughnessLevel> + use<> {
-        self.range.clone().map(RoughnessLevel)
+    /// Returns the levels with models at a distance of `step`.
+    fn at_steps_of(self, step: i32) -> TextureLevels {
+        let span = (self.range.end() - self.range.start()) as usize;
+        TextureLevels { step, count: span.div_ceil(step as usize) + 1, ..self }
     }
 
-    /// Returns the index of the level of a value of the texture, counted from the lowest level.
+    /// Returns the level of an index.
+    fn level(&self, index: usize) -> RoughnessLevel {
+        RoughnessLevel(self.range.start() + index as i32 * self.step)
+    }
+
+    /// Returns the index of the level nearest to a value of the texture.
     #[inline]
-    pub fn index(&self, value: f32) -> usize {
+    fn index(&self, value: f32) -> usize {
         let level = RoughnessLevel::of(value).0.clamp(*self.range.start(), *self.range.end());
-        (level - self.range.start()) as usize
+        let distance = level - self.range.start();
+        // The common case, without a division.
+        let index = if self.step == 1 { distance } else { (distance + self.step / 2) / self.step };
+        (index as usize).min(self.count - 1)
     }
+}
+
+/// Levels of a material's textured roughness: those of its texture, or pairs of those of its two textures.
+#[derive(Clone, Debug)]
+pub(super) struct RoughnessLevels {
+    first: TextureLevels,
+    second: Option<TextureLevels>,
+}
+
+/// Textures whose levels are known while a model is built, and the levels.
+pub(super) type LevelPair = Vec<(TextureId, RoughnessLevel)>;
+
+impl RoughnessLevels {
+    /// Returns the levels of the first part of `material` whose roughness is textured, if there is any.
+    pub fn of(material: &Material, scene: &Scene) -> Option<RoughnessLevels> {
+        let of_lobe = |lobe: &Lobe| match lobe {
+            Lobe::Rough { alpha, .. } | Lobe::RoughDielectric { alpha, .. } => textures(&[*alpha]),
+            Lobe::Anisotropic { alpha, .. } => textures(alpha),
+            Lobe::Mirror { .. } | Lobe::Dielectric { .. } => None,
+        };
+        let of_part = |part: &Material| match &part.principled {
+            Some(principled) => textures(&[principled.roughness, principled.anisotropic]),
+            None => part.lobes.iter().find_map(of_lobe),
+        };
+        let (first, second) = material.parts().find_map(of_part)?;
+        let first = TextureLevels::of(first, scene)?;
+        let second = second.and_then(|second| TextureLevels::of(second, scene));
+        let Some(mut second) = second else { return Some(RoughnessLevels { first, second }) };
+        // Levels of two textures are wider, so that there are few enough pairs.
+        let (mut first, mut step) = (first, MIN_STEP);
+        loop {
+            (first, second) = (first.at_steps_of(step), second.at_steps_of(step));
+            if first.count * second.count <= MAX_PAIRS {
+                return Some(RoughnessLevels { first, second: Some(second) });
+            }
+            step *= 2;
+        }
+    }
+
+    /// Returns the texture that is looked up first.
+    pub fn first_texture(&self) -> TextureId {
+        self.first.texture
+    }
+
+    /// Lists the levels of all models, by index.
+    pub fn all(&self) -> impl Iterator<Item = LevelPair> + use<> {
+        let RoughnessLevels { first, second } = self.clone();
+        let of_second = second.as_ref().map_or(1, |second| second.count);
+        (0..first.count * of_second).map(move |index| {
+            let mut pair = vec![(first.texture, first.level(index / of_second))];
+            pair.extend(second.as_ref().map(|second| (second.texture, second.level(index % of_second))));
+            pair
+        })
+    }
+
+    /// Returns the index of the model for the values of the textures, which `value` returns.
+    #[inline]
+    pub fn index(&self, value: impl Fn(TextureId) -> f32) -> usize {
+        let first = self.first.index(value(self.first.texture));
+        match &self.second {
+            Some(second) => first * second.count + second.index(value(second.texture)),
+            None => first,
+        }
+    }
+}
+
+/// Returns the first texture of parameters, and the second if it is another one; `None` if none is textured.
+fn textures(parameters: &[Roughness]) -> Option<(TextureId, Option<TextureId>)> {
+    let mut all = parameters.iter().filter_map(Roughness::texture);
+    let first = all.next()?;
+    Some((first, all.find(|other| *other != first)))
 }
 
 /// Values of textured roughness while a model is built.
 #[derive(Clone, Copy)]
 pub(super) struct RoughnessValues<'a> {
+    /// Means of the scene's textures.
     pub means: &'a TextureMeans,
-    /// Texture whose level is known, and the level.
-    pub level: Option<(TextureId, RoughnessLevel)>,
+    /// Textures whose levels are known.
+    pub levels: Option<&'a LevelPair>,
 }
 
 impl RoughnessValues<'_> {
-    /// Returns α: that of the level if the texture is the level's, else that of the texture's mean.
+    /// Returns α: that of the level if that of its texture is known, else that of the texture's mean.
     pub fn alpha(&self, roughness: &Roughness) -> f32 {
-        roughness.value(|texture| match self.level {
-            Some((known, level)) if known == texture => level.value(),
-            _ => luminance(self.means.of(texture)),
-        })
+        self.alpha_at(roughness, |level| level)
     }
 
-    /// Returns the values for the tables of a coat.
-    pub fn of_coat(self) -> Self {
-        let level = self.level.map(|(texture, level)| (texture, level.of_coat()));
-        RoughnessValues { level, ..self }
+    /// Returns α for the tables of a coat.
+    pub fn alpha_of_coat(&self, roughness: &Roughness) -> f32 {
+        self.alpha_at(roughness, RoughnessLevel::of_coat)
+    }
+
+    fn alpha_at(&self, roughness: &Roughness, level: impl Fn(RoughnessLevel) -> RoughnessLevel) -> f32 {
+        roughness.value(|texture| {
+            let known = self.levels.and_then(|levels| levels.iter().find(|(known, _)| *known == texture));
+            known.map_or_else(|| luminance(self.means.of(texture)), |(_, found)| level(*found).value())
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testkit::{add_texture, scene, texture};
+    use base::math::Rgb;
+    use scene::{Camera, Distribution, Fresnel};
+
+    #[test]
+    fn pairs_of_levels_are_few_and_near_the_values() {
+        for (least, most_off) in [(0.25f32, 0.045), (1e-3, 0.4)] {
+            let mut scene = scene(Camera::default(), [1, 1]);
+            let values: Vec<Rgb> = (0..64).map(|i| Rgb::splat(least.powf(i as f32 / 63.0))).collect();
+            let ids = [(); 2].map(|()| add_texture(&mut scene, texture(64, &values)));
+            let alpha = ids.map(|texture| Roughness::Textured { texture, scale: 1.0 });
+            let (distribution, fresnel, scale) = (Distribution::Ggx, Fresnel::One, Rgb::ONE.into());
+            let lobes = vec![Lobe::Anisotropic { distribution, alpha, fresnel, scale }];
+            let levels =
+                RoughnessLevels::of(&Material { lobes, ..Material::default() }, &scene).expect("levels");
+            let all: Vec<LevelPair> = levels.all().collect();
+            assert!(all.len() <= MAX_PAIRS, "{}", all.len());
+            for (i, j) in [(0, 0), (63, 63), (5, 40), (63, 1), (31, 33)] {
+                let wanted = [values[i].x, values[j].x];
+                let found = &all[levels.index(|id| wanted[usize::from(id == ids[1])])];
+                for ((_, level), wanted) in found.iter().zip(wanted) {
+                    let off = (level.value() / wanted - 1.0).abs();
+                    assert!(off < most_off, "{least}: {off} at {i}, {j}");
+                }
+            }
+        }
     }
 }

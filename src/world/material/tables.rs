@@ -2,6 +2,7 @@
 
 use super::albedo::albedo_table;
 use super::base::RoughCoat;
+use super::lobe::{AnisotropicLobe, Grazing, GrazingKind};
 use super::microfacet::Microfacets;
 use super::table::AngleTable;
 use base::math::Rgb;
@@ -13,7 +14,14 @@ use std::sync::Arc;
 pub(super) struct Tables {
     coats: Vec<(Microfacets, f32, Arc<RoughCoat>)>,
     albedos: Vec<(Microfacets, Fresnel, Arc<AngleTable<Rgb>>)>,
+    /// Anisotropic lobes and their albedos.
+    anisotropic: Vec<(AnisotropicLobe, Arc<AngleTable<Rgb>>)>,
+    /// Retroreflection by roughness.
+    retros: Vec<(f32, Grazing)>,
 }
+
+/// Number of albedos of anisotropic lobes of textured roughness between a roughness and its double.
+const ALBEDOS_PER_OCTAVE: f32 = 2.0;
 
 impl Tables {
     /// Returns the tables of a rough coat.
@@ -24,6 +32,29 @@ impl Tables {
         let coat = Arc::new(RoughCoat::new(&facets, eta));
         self.coats.push((facets, eta, coat.clone()));
         coat
+    }
+
+    /// Returns the albedo by angle of an anisotropic lobe. If `is_level`, the lobe is one of many of a textured
+    /// roughness, and that of a lobe of about the same roughness is returned. It guides sampling.
+    pub fn anisotropic_albedo(&mut self, lobe: &AnisotropicLobe, is_level: bool) -> Arc<AngleTable<Rgb>> {
+        let rounded = |alpha: f32| ((alpha.log2() * ALBEDOS_PER_OCTAVE).round() / ALBEDOS_PER_OCTAVE).exp2();
+        let near = if is_level { lobe.with_alpha(lobe.alpha().map(rounded)) } else { lobe.clone() };
+        if let Some((_, albedo)) = self.anisotropic.iter().find(|(other, _)| *other == near) {
+            return albedo.clone();
+        }
+        let albedo = Arc::new(near.albedo_table());
+        self.anisotropic.push((near, albedo.clone()));
+        albedo
+    }
+
+    /// Returns the retroreflection of a rough base.
+    pub fn retro(&mut self, roughness: f32) -> Grazing {
+        if let Some((_, retro)) = self.retros.iter().find(|(other, _)| *other == roughness) {
+            return retro.clone();
+        }
+        let retro = Grazing::new(GrazingKind::Retro { roughness });
+        self.retros.push((roughness, retro.clone()));
+        retro
     }
 
     /// Returns the albedo by angle of microfacets.

@@ -4,6 +4,7 @@ mod agreement;
 mod alike;
 mod blends;
 mod bounds;
+mod brushed;
 mod energy;
 mod filtering;
 mod gaps;
@@ -67,7 +68,8 @@ fn rough_conductor(distribution: Distribution, alpha: f32, scale: Rgb) -> Materi
 /// Returns a metal whose roughness differs along x and y.
 fn brushed(distribution: Distribution, alpha: [f32; 2]) -> Material {
     let scale = constant(Rgb::new(0.9, 0.8, 0.7));
-    let lobe = Lobe::Anisotropic { distribution, alpha, fresnel: GOLD, scale };
+    let lobe =
+        Lobe::Anisotropic { distribution, alpha: alpha.map(Roughness::Constant), fresnel: GOLD, scale };
     let name = format!("roughconductor_{}_{}_{}", label(distribution), alpha[0], alpha[1]);
     material(&name, Rgb::ZERO, None, lobe)
 }
@@ -124,7 +126,7 @@ fn principled_materials() -> Vec<Material> {
         principled("principled_plain", of(0.0, 0.5)),
         principled("principled_metal", of(1.0, 0.4)),
         principled("principled_mixed", mixed),
-        principled("principled_brushed", Principled { anisotropic: 0.6, ..of(0.5, 0.5) }),
+        principled("principled_brushed", Principled { anisotropic: 0.6.into(), ..of(0.5, 0.5) }),
     ]
 }
 
@@ -215,7 +217,7 @@ fn min_alpha(material: &Material) -> f32 {
     }
     let alphas = material.parts().flat_map(|part| &part.lobes).filter_map(|lobe| match lobe {
         Lobe::Rough { alpha: Roughness::Constant(alpha), .. } => Some(*alpha),
-        Lobe::Anisotropic { alpha: [u, v], .. } => Some(u.min(*v)),
+        Lobe::Anisotropic { alpha: [Roughness::Constant(u), Roughness::Constant(v)], .. } => Some(u.min(*v)),
         _ => None,
     });
     alphas.fold(f32::INFINITY, f32::min)

@@ -71,8 +71,10 @@ impl MaterialChecks<'_> {
     }
 
     fn principled(&self, principled: &Principled) -> Result<(), SceneError> {
-        if !(0.0..=1.0).contains(&principled.anisotropic) {
-            let what = format!("its roughness is anisotropic by {}", principled.anisotropic);
+        if let Share::Constant(anisotropic) = principled.anisotropic
+            && !(0.0..=1.0).contains(&anisotropic)
+        {
+            let what = format!("its roughness is anisotropic by {anisotropic}");
             return Err(self.wrong(what, "give 0 to 1"));
         }
         if !principled.anisotropic_rotation.is_finite() {
@@ -124,31 +126,34 @@ impl MaterialChecks<'_> {
         }
         match lobe {
             Lobe::Rough { alpha, .. } | Lobe::RoughDielectric { alpha, .. } => {
-                let (Roughness::Constant(value) | Roughness::Textured { scale: value, .. }) = alpha;
-                self.roughness(*value)?;
-                match alpha {
-                    Roughness::Constant(value) => *value = value.max(MIN_ALPHA),
-                    Roughness::Textured { texture, scale } => {
-                        if let Some(texture) = textures.get_mut(texture.0 as usize) {
-                            clamp_texels(texture, Rgb::splat(*scale), report);
-                        }
-                    }
-                }
+                self.roughness(alpha, textures, report)
             }
             Lobe::Anisotropic { alpha, .. } => {
-                alpha.iter().try_for_each(|value| self.roughness(*value))?;
-                *alpha = alpha.map(|value| value.max(MIN_ALPHA));
+                alpha.iter_mut().try_for_each(|alpha| self.roughness(alpha, textures, report))
             }
-            Lobe::Mirror { .. } | Lobe::Dielectric { .. } => {}
+            Lobe::Mirror { .. } | Lobe::Dielectric { .. } => Ok(()),
         }
-        Ok(())
     }
 
-    fn roughness(&self, alpha: f32) -> Result<(), SceneError> {
-        match (0.0..=MAX_ALPHA).contains(&alpha) {
-            true => Ok(()),
-            false => Err(self.wrong(format!("its roughness is {alpha}"), "give 0 to 1, at most 4")),
+    fn roughness(
+        &self,
+        alpha: &mut Roughness,
+        textures: &mut [Texture],
+        report: &mut SanitizeReport,
+    ) -> Result<(), SceneError> {
+        let (Roughness::Constant(value) | Roughness::Textured { scale: value, .. }) = alpha;
+        if !(0.0..=MAX_ALPHA).contains(value) {
+            return Err(self.wrong(format!("its roughness is {value}"), "give 0 to 1, at most 4"));
         }
+        match alpha {
+            Roughness::Constant(value) => *value = value.max(MIN_ALPHA),
+            Roughness::Textured { texture, scale } => {
+                if let Some(texture) = textures.get_mut(texture.0 as usize) {
+                    clamp_texels(texture, Rgb::splat(*scale), report);
+                }
+            }
+        }
+        Ok(())
     }
 
     fn indices_of_refraction(&self, material: &Material) -> Result<(), SceneError> {

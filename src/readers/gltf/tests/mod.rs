@@ -281,19 +281,41 @@ fn layers_lie_over_the_base() {
     let eta = principled(&loaded, "dull").eta;
     assert!((((eta - 1.0) / (eta + 1.0)).powi(2) - 0.01).abs() < 1e-6);
     // Formula of the extension: α is 0.25 across, and 0.25 + 0.75 · 0.36 along.
-    for (name, [along, across]) in
-        [("brushed 0.5", [0.52, 0.25]), ("brushed 0.1", [1.0, 0.1].map(|a| a * 0.1f32.sqrt()))]
-    {
+    for (name, [along, across]) in [("brushed 0.5", [0.52, 0.25]), ("brushed 0.1", [1.0, 0.01])] {
         let brushed = principled(&loaded, name);
-        let Share::Constant(roughness) = brushed.roughness else { panic!() };
-        let aspect = (1.0 - 0.9 * brushed.anisotropic).sqrt();
-        let alpha = roughness * roughness;
-        assert!(
-            (alpha / aspect - along).abs() < 1e-5 && (alpha * aspect - across).abs() < 1e-5,
-            "{brushed:?}"
-        );
+        let (Share::Constant(roughness), Share::Constant(strength)) =
+            (brushed.roughness, brushed.anisotropic)
+        else {
+            panic!("{brushed:?}")
+        };
+        let [found_along, found_across] = brushed.stretch.alphas(roughness * roughness, strength);
+        assert!((found_along - along).abs() < 1e-5 && (found_across - across).abs() < 1e-5, "{brushed:?}");
         assert_eq!(brushed.anisotropic_rotation, 0.5);
     }
+}
+
+#[test]
+fn textures_give_the_strength_and_direction_of_anisotropy() {
+    let mut model = Model::new();
+    let directions = model.texture([[204, 230, 51, 255]; 4], json!({}));
+    let rough = model.texture([[0, 128, 255, 255]; 4], json!({}));
+    model.shown(json!({
+        "name": "brushed",
+        "pbrMetallicRoughness": { "metallicRoughnessTexture": { "index": rough } },
+        "extensions": { "KHR_materials_anisotropy": {
+            "anisotropyStrength": 0.5, "anisotropyRotation": 0.25, "anisotropyTexture": { "index": directions },
+        } },
+    }));
+    model.uses("KHR_materials_anisotropy");
+    let loaded = load_bytes("m.glb", &model.glb()).unwrap();
+    assert!(loaded.warnings.iter().all(|w| !w.what.contains("nisotrop")), "{:?}", loaded.warnings);
+    let brushed = principled(&loaded, "brushed");
+    let Share::Textured { texture, scale: 0.5 } = brushed.anisotropic else { panic!("{brushed:?}") };
+    let texel = |id: scene::TextureId| loaded.scene.textures.by_id(id).unwrap().texels.get(0, 0);
+    assert!((luminance(texel(texture)) - 0.2).abs() < 1e-6 && brushed.roughness.is_textured());
+    let direction = brushed.anisotropic_direction.expect("a texture");
+    assert!((texel(direction) - Vec3::new(204.0, 230.0, 51.0) / 255.0).length() < 1e-6);
+    assert_eq!((brushed.anisotropic_rotation, brushed.stretch), (0.25, scene::Stretch::AlongU));
 }
 
 #[test]

@@ -38,10 +38,25 @@ fn what_is_not_modelled_is_replaced_with_a_warning_of_its_line() {
     );
     let both = "<float name=\"alpha_u\" value=\"0.1\"/><float name=\"alpha_v\" value=\"0.4\"/>";
     let (brushed, warnings) = bsdf(&format!("<bsdf type=\"roughconductor\">{both}</bsdf>"));
-    assert!(matches!(brushed.lobes[..], [Lobe::Anisotropic { alpha: [0.1, 0.4], .. }]) && warnings == 0);
+    assert!(
+        matches!(
+            brushed.lobes[..],
+            [Lobe::Anisotropic { alpha: [Roughness::Constant(0.1), Roughness::Constant(0.4)], .. }]
+        ) && warnings == 0
+    );
+    let along = format!("<float name=\"alpha_u\" value=\"0.1\"/>{}", checkers.replace("alpha", "alpha_v"));
+    let (brushed, warnings) = bsdf(&format!("<bsdf type=\"roughconductor\">{along}</bsdf>"));
+    assert!(matches!(
+        brushed.lobes[..],
+        [Lobe::Anisotropic { alpha: [Roughness::Constant(0.1), Roughness::Textured { .. }], .. }]
+    ));
+    assert_eq!(warnings, 0);
+    let (brushed, warnings) =
+        bsdf(&format!("<bsdf type=\"principled\">{}</bsdf>", checkers.replace("alpha", "anisotropic")));
+    assert!(brushed.principled.is_some_and(|p| p.anisotropic.is_textured()) && warnings == 0);
     let (brushed, warnings) =
         bsdf("<bsdf type=\"principled\"><float name=\"anisotropic\" value=\"0.5\"/></bsdf>");
-    assert!(brushed.principled.is_some_and(|p| p.anisotropic == 0.5) && warnings == 0);
+    assert!(brushed.principled.is_some_and(|p| p.anisotropic == 0.5.into()) && warnings == 0);
     let (mask, _) = bsdf(&format!("<bsdf type=\"mask\">{nested}</bsdf>"));
     assert_eq!((mask.diffuse, mask.opacity), (Rgb::splat(0.3).into(), Some(0.5.into())));
     let absorbing = "<float name=\"thickness\" value=\"0.5\"/><rgb name=\"sigma_a\" value=\"1\"/>";

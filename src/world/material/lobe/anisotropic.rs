@@ -38,7 +38,8 @@ pub(in crate::material) struct AnisotropicLobe {
     /// Roughness along x and y.
     alpha: Vec2,
     fresnel: Fresnel,
-    albedo: Arc<AngleTable<Rgb>>,
+    /// Albedo by angle; black until it is tabulated.
+    pub albedo: Arc<AngleTable<Rgb>>,
 }
 
 impl PartialEq for AnisotropicLobe {
@@ -48,17 +49,30 @@ impl PartialEq for AnisotropicLobe {
 }
 
 impl AnisotropicLobe {
-    /// Builds a lobe of a roughness along x and one along y.
+    /// Builds a lobe of a roughness along x and one along y, without its albedo.
     pub fn new(distribution: Distribution, alpha: [f32; 2], fresnel: Fresnel) -> AnisotropicLobe {
         let ends = [alpha[0].min(alpha[1]), alpha[0].max(alpha[1])];
         let ends = ends.map(|alpha| Microfacets::new(distribution, alpha));
         let alpha = alpha.map(|alpha| Microfacets::new(distribution, alpha).alpha);
         let black = Arc::new(AngleTable([Rgb::ZERO; crate::material::table::ANGLES]));
         let unit = Microfacets::new(distribution, 1.0);
-        let mut lobe = AnisotropicLobe { unit, ends, alpha: Vec2::from(alpha), fresnel, albedo: black };
+        AnisotropicLobe { unit, ends, alpha: Vec2::from(alpha), fresnel, albedo: black }
+    }
+
+    /// Tabulates the albedo by angle.
+    pub fn albedo_table(&self) -> AngleTable<Rgb> {
         let nodes = rule(24);
-        lobe.albedo = Arc::new(AngleTable::new(|wo| lobe.integrated(wo, &nodes)));
-        lobe
+        AngleTable::new(|wo| self.integrated(wo, &nodes))
+    }
+
+    /// Returns the roughness along x and along y.
+    pub fn alpha(&self) -> [f32; 2] {
+        self.alpha.to_array()
+    }
+
+    /// Returns the lobe with another roughness along x and along y.
+    pub fn with_alpha(&self, alpha: [f32; 2]) -> AnisotropicLobe {
+        AnisotropicLobe::new(self.unit.distribution, alpha, self.fresnel)
     }
 
     /// Returns the smaller roughness α.

@@ -62,6 +62,7 @@ fn at_points() -> Vec<Material> {
         Material { relief: Some(relief), ..textured(lambert(PAINT)) },
         principled(|p| p.metallic = share()),
         principled(|p| p.roughness = share()),
+        principled(|p| p.anisotropic = share()),
         principled(|p| p.spec_tint = Share::Constant(0.5)),
         principled(|p| p.spec_trans = Share::Constant(0.5)),
     ]
