@@ -46,6 +46,8 @@ pub(crate) enum Channel {
     /// One channel, without decoding from sRGB, as a grey of 8 bits. 0 to 3 stand for red, green, blue and alpha; a
     /// missing channel is 1.
     One(usize),
+    /// Alpha as a grey, or all channels without decoding from sRGB where the image has no alpha.
+    AlphaOrData,
     /// 1 if alpha is at least the value, else 0.
     AlphaFrom(f32),
 }
@@ -86,14 +88,17 @@ pub fn decode(
     })
 }
 
-/// Decodes the picture of an OpenEXR file; see [`base::exr_file::read_picture`].
+/// Decodes the picture of an OpenEXR file; see [`base::exr_file::read_picture`]. Its alpha is never read.
 fn decode_exr(bytes: &[u8], channel: Channel) -> Result<DecodedImage, Refusal> {
     let mut source = ExrSource::open(Cursor::new(bytes))?;
     let check = |[width, height]: [usize; 2], of_file: u64| {
         check_size(width, height, of_file + LONG_PIXEL_BYTES, bytes)
     };
-    let ExrPicture { size: [width, height], pixels } =
-        read_picture(&mut source, channel == Channel::Data, check)?;
+    let ExrPicture { size: [width, height], mut pixels } =
+        read_picture(&mut source, channel != Channel::Colour, check)?;
+    if let Channel::One(channel @ 0..=2) = channel {
+        pixels.iter_mut().for_each(|pixel| *pixel = Rgb::splat(pixel[channel]));
+    }
     Ok(DecodedImage { width, height, texels: Texels::new(width, &pixels) })
 }
 
@@ -142,7 +147,8 @@ fn decode_common(bytes: &[u8], channel: Channel, path: &Path) -> Result<DecodedI
     };
     let raw = match channel {
         Channel::Colour => false,
-        Channel::Data => true,
+        Channel::AlphaOrData if image.color().has_alpha() => return grey(&|rgba| rgba[3]),
+        Channel::Data | Channel::AlphaOrData => true,
         Channel::One(channel) => return grey(&|rgba| rgba[channel]),
         Channel::AlphaFrom(cutoff) => {
             return grey(&|rgba| if f32::from(rgba[3]) >= 255.0 * cutoff { 255 } else { 0 });

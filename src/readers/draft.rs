@@ -70,6 +70,8 @@ pub(crate) struct DraftMesh {
     /// Number of triangles whose winding was reversed to agree with their vertex normals.
     pub turned: usize,
     pub attributes: Vec<NamedAttribute>,
+    /// True if the file has no texture coordinates for some triangles.
+    pub lacks_uvs: bool,
 }
 
 impl DraftMesh {

@@ -78,6 +78,13 @@ pub struct Warning {
     pub fallback: String,
 }
 
+impl Warning {
+    /// Returns a warning about a change of the image.
+    pub(crate) fn new(place: Location, what: impl Into<String>, fallback: impl Into<String>) -> Warning {
+        Warning { place, severity: Severity::Warning, what: what.into(), fallback: fallback.into() }
+    }
+}
+
 impl fmt::Display for Warning {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         write!(f, "{}: {}; {}", self.place, self.what, self.fallback)
@@ -242,13 +249,15 @@ impl Log {
         what: impl Into<String>,
         fallback: impl Into<String>,
     ) -> Result<(), SceneError> {
-        let warning = Warning {
-            place: place.clone(),
-            severity: Severity::Warning,
-            what: what.into(),
-            fallback: fallback.into(),
-        };
-        if self.strict {
+        self.add(Warning::new(place.clone(), what, fallback))
+    }
+
+    /// Adds a warning that was made elsewhere.
+    ///
+    /// # Errors
+    /// Under `strict`, unless it is a note.
+    pub fn add(&mut self, warning: Warning) -> Result<(), SceneError> {
+        if self.strict && warning.severity == Severity::Warning {
             return Err(SceneError::Strict(warning));
         }
         self.push(warning);

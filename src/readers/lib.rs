@@ -20,10 +20,13 @@ pub mod error;
 mod file;
 mod finish;
 mod gltf;
+mod lacking_uvs;
 mod layers;
 mod mesh;
 #[cfg(test)]
 mod mirrored_tests;
+#[cfg(test)]
+mod missing_tests;
 mod mitsuba;
 mod native;
 mod options;
@@ -33,7 +36,9 @@ mod realise;
 mod requirements_tests;
 mod selection;
 mod sky;
+mod stand_in;
 mod statements;
+mod surfaces;
 
 use error::Log;
 use finish::{divide, recentre, sanitize, wanted};

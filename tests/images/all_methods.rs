@@ -8,8 +8,8 @@ use crate::oracle::{assert_means_within, mean};
 use glam::{DVec3, Vec2, Vec3};
 use lightsplat::math::Rgb;
 use lightsplat::scene::{
-    Attribute, AttributeId, AttributeValues, DeltaLight, DistantDisc, Emission, Environment, Filter, Material,
-    MaterialId, Mesh, Reflectance, Scene, Share, Texture, Wrap,
+    Attribute, AttributeId, AttributeValues, DeltaLight, DistantDisc, Emission, Environment, Filter,
+    Material, MaterialId, Mesh, Reflectance, Scene, Share, Texture, Wrap,
 };
 use std::f32::consts::PI;
 
@@ -127,33 +127,35 @@ const SCENES: [NamedScene; 17] = [
             let radiance = Rgb::splat(IRRADIANCE / (PI * 4.0 * corner_factor));
             let shares = vec![Rgb::new(0.2, 1.0, 2.0), Rgb::new(1.8, 1.0, 0.0)];
 
-/// Adds the parallel square over the floor. Its material covers the share `opacity` of it on average.
-fn square_lamp(scene: &mut Scene, material: MaterialId, opacity: f32) {
-    let (h, d) = (0.5f32, 2.0f32);
-    let a = h / d;
-    let corner_factor = a / (1.0 + a * a).sqrt() * (a / (1.0 + a * a).sqrt()).atan() / PI;
-    let lamp = quad(Vec3::new(-h, d, -h), Vec3::X * 2.0 * h, Vec3::Z * 2.0 * h, material);
-    let radiance = IRRADIANCE / (PI * 4.0 * corner_factor) / opacity;
-    scene.meshes.push(emitting(textured(lamp, Vec2::ONE), Rgb::splat(radiance)));
-}
+            /// Adds the parallel square over the floor. Its material covers the share `opacity` of it on average.
+            fn square_lamp(scene: &mut Scene, material: MaterialId, opacity: f32) {
+                let (h, d) = (0.5f32, 2.0f32);
+                let a = h / d;
+                let corner_factor = a / (1.0 + a * a).sqrt() * (a / (1.0 + a * a).sqrt()).atan() / PI;
+                let lamp = quad(Vec3::new(-h, d, -h), Vec3::X * 2.0 * h, Vec3::Z * 2.0 * h, material);
+                let radiance = IRRADIANCE / (PI * 4.0 * corner_factor) / opacity;
+                scene.meshes.push(emitting(textured(lamp, Vec2::ONE), Rgb::splat(radiance)));
+            }
 
-/// Adds a texture that is black on the left and white on the right, with a ramp between them.
-fn ramp(scene: &mut Scene, filter: Filter) -> Share {
-    let texels = [Rgb::ZERO, Rgb::ONE];
-    let ramp = Texture { filter, wrap: Wrap::Clamp, ..texture(2, &texels) };
-    Share::Textured { texture: add_texture(scene, ramp), scale: 1.0 }
-}
+            /// Adds a texture that is black on the left and white on the right, with a ramp between them.
+            fn ramp(scene: &mut Scene, filter: Filter) -> Share {
+                let texels = [Rgb::ZERO, Rgb::ONE];
+                let ramp = Texture { filter, wrap: Wrap::Clamp, ..texture(2, &texels) };
+                Share::Textured { texture: add_texture(scene, ramp), scale: 1.0 }
+            }
 
-/// Adds two sheets, one behind the other, whose opacity is a ramp. Where they are there, they emit what they absorb.
-fn leaves(scene: &mut Scene, filter: Filter) {
-    let opacity = Some(ramp(scene, filter));
-    let leaf = add_material(scene, Material { opacity, ..diffuse(Rgb::splat(ALBEDO)) });
-    for z in [-0.4, 0.0] {
-        let mut mesh = textured(quad(Vec3::new(-0.5, -0.6, z), Vec3::X, Vec3::Y, leaf), Vec2::splat(2.5));
-        mesh.emission = Some(Emission { radiance: Rgb::splat(1.0 - ALBEDO), texture: None, two_sided: true });
-        scene.meshes.push(mesh);
-    }
-}
+            /// Adds two sheets, one behind the other, whose opacity is a ramp. Where they are there, they emit what they absorb.
+            fn leaves(scene: &mut Scene, filter: Filter) {
+                let opacity = Some(ramp(scene, filter));
+                let leaf = add_material(scene, Material { opacity, ..diffuse(Rgb::splat(ALBEDO)) });
+                for z in [-0.4, 0.0] {
+                    let mut mesh =
+                        textured(quad(Vec3::new(-0.5, -0.6, z), Vec3::X, Vec3::Y, leaf), Vec2::splat(2.5));
+                    mesh.emission =
+                        Some(Emission { radiance: Rgb::splat(1.0 - ALBEDO), texture: None, two_sided: true });
+                    scene.meshes.push(mesh);
+                }
+            }
             let mut lamp = with_attribute(lamp, AttributeValues::Triangles(shares));
             lamp.emission = Some(Emission { radiance, texture, two_sided: false });
             scene.meshes.push(lamp);

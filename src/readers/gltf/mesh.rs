@@ -60,8 +60,7 @@ pub(super) fn read(
         ("texture coordinates", uvs.len()),
         ("tangents", tangents.len()),
         ("colours", colours),
-    ]
-    {
+    ] {
         if length != 0 && length != positions.len() {
             return Err(
                 document.wrong(format!("{what} has {} vertices and {length} {name}", positions.len()))

@@ -8,14 +8,20 @@
 //! outside stays outside, with or without normals. This is the rule of glTF 2.0 and of Mitsuba 3 later than 3.9.1.
 //! Mitsuba up to 3.9.1 turns mirrored meshes without normals inside out.
 
+pub mod map_options;
+pub mod material_parts;
 pub mod mtl;
+pub(crate) mod mtl_statements;
 pub mod obj;
+pub mod obj_references;
+mod obj_statements;
 pub mod ply;
 mod ply_attributes;
 mod polygon;
 pub mod serialized;
 pub mod shapes;
 mod smooth;
+mod wavefront;
 
 pub(crate) use smooth::vertex_normals as smooth_normals;
 

@@ -9,7 +9,7 @@ use crate::mesh::{Normals, Placement, RawMesh, ply, shapes};
 use crate::plan::{MaterialPlan, MeshPlan, MeshSource};
 use crate::selection::PartSelection;
 use base::math::unit;
-use glam::{DMat4, DVec3};
+use glam::{DMat3, DMat4, DVec3};
 use lightsplat_scenes::Part;
 use scene::{Emission, MaterialId, Reflectance};
 use std::path::{Path, PathBuf};
@@ -30,9 +30,10 @@ impl SceneBuilder<'_> {
         if !matches!(geometry, MeshSource::Obj(..)) && (text.group.is_some() || text.except.is_some()) {
             return Err(place.wrong("the mesh has no groups", "leave group and except out"));
         }
+        let to_world = self.transform(&text.transform)?;
         let material = match (self.named_material(text)?, &geometry) {
             (Some(material), _) => MaterialPlan::One(material),
-            (None, MeshSource::Obj(path, _)) => self.mtl_materials(path, &place)?,
+            (None, MeshSource::Obj(path, _)) => self.mtl_materials(path, &place, &to_world)?,
             (None, MeshSource::Ply(path)) if ply::has_colours(&read_file(path, &place)?) => {
                 MaterialPlan::One(self.default_material(true, &place))
             }
@@ -43,7 +44,7 @@ impl SceneBuilder<'_> {
         let emission =
             text.emission.as_ref().map(|colour| self.emission(colour, text, &place)).transpose()?;
         let placement = Placement {
-            to_world: self.transform(&text.transform)?,
+            to_world,
             normals: Normals::AsGiven,
             flip_normals: text.flip_normals,
             // The v of a sphere counts from its north pole.
@@ -163,8 +164,14 @@ impl SceneBuilder<'_> {
     }
 
     /// Reads the materials of the OBJ's MTL files. They are assigned by name.
-    fn mtl_materials(&mut self, path: &Path, place: &Location) -> Result<MaterialPlan, SceneError> {
-        let (names, has_colours) = self.read_mtl(path, place)?;
+    fn mtl_materials(
+        &mut self,
+        path: &Path,
+        place: &Location,
+        to_world: &DMat4,
+    ) -> Result<MaterialPlan, SceneError> {
+        let unit = DMat3::from_mat4(*to_world).determinant().abs().cbrt();
+        let (names, has_colours) = self.read_mtl(path, place, unit as f32)?;
         let other = self.default_material(has_colours, place);
         Ok(MaterialPlan::ByName(names, other))
     }

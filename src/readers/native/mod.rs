@@ -4,6 +4,8 @@
 
 mod builder;
 mod camera;
+mod classic;
+mod classic_maps;
 mod colour;
 mod light;
 mod material;
@@ -68,6 +70,8 @@ pub(super) fn read(path: &Path, log: &mut Log) -> Result<ScenePlan, SceneError> 
     })
 }
 
+#[cfg(test)]
+mod classic_tests;
 #[cfg(test)]
 mod page;
 #[cfg(test)]

@@ -262,7 +262,8 @@ fn an_obj_brings_its_mtl_materials() {
     let emission: Vec<Option<Vec3>> = scene.meshes.iter().map(|m| m.emission.map(|e| e.radiance)).collect();
     assert_eq!(emission, [None, None, None, None, Some(Vec3::new(9.0, 8.0, 7.0))]);
     assert_eq!((material(3).opacity, material(4).opacity), (None, Some(Share::Constant(0.25))));
-    assert!(loaded.warnings.is_empty(), "{:?}", loaded.warnings);
+    let [lost] = &loaded.warnings[..] else { panic!("{:?}", loaded.warnings) };
+    assert!(lost.to_string().contains("not in its libraries: \"lost\"; a grey of 0.5 stands in"), "{lost}");
     assert_eq!(scene.sources.len(), 3);
 
     let lamp = format!(
