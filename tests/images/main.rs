@@ -25,6 +25,7 @@ mod glossy;
 mod lightcuts;
 mod many_lights;
 mod mitsuba;
+mod obj_materials;
 mod occluder_cache;
 mod opacity;
 mod path;
