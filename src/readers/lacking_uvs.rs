@@ -4,7 +4,7 @@ use crate::decode::DecodedImage;
 use crate::draft::DraftMesh;
 use crate::error::{Location, Log, SceneError};
 use crate::plan::{Contents, MeshPlan, TextureSource};
-use scene::{Lobe, Material, Parameter, Relief, TextureId};
+use scene::{Relief, TextureId};
 
 /// Maximum number of meshes that a message lists.
 const MAX_LISTED: usize = 4;
@@ -59,49 +59,20 @@ pub(crate) fn report(
 /// Returns the textures on a mesh.
 fn textures(contents: &Contents, plan: &MeshPlan, mesh: &DraftMesh) -> Vec<TextureId> {
     let emission = plan.emission.or(mesh.emission).and_then(|emission| emission.texture);
-    let material = contents.materials.get(mesh.material.0 as usize);
-    let mut all: Vec<TextureId> = material.map(of_material).unwrap_or_default();
-    all.extend(emission);
-    all
-}
-
-fn of_material(material: &Material) -> Vec<TextureId> {
-    let mut all = Vec::new();
-    for part in material.parts() {
-        let mut part = Material { blend: None, ..part.clone() };
-        all.extend(part.reflectances_mut().into_iter().filter_map(|colour| texture(colour)));
-        all.extend(part.shares_mut().into_iter().filter_map(|share| texture(share)));
-        let of_lobe = |lobe: &Lobe| match lobe {
-            Lobe::Rough { alpha, .. } | Lobe::RoughDielectric { alpha, .. } => texture(alpha),
-            Lobe::Anisotropic { .. } | Lobe::Mirror { .. } | Lobe::Dielectric { .. } => None,
-        };
-        all.extend(part.lobes.iter().filter_map(of_lobe));
-        all.extend(part.relief.map(|relief| match relief {
+    let mut all = Vec::from_iter(emission);
+    if let Some(material) = contents.materials.get(mesh.material.0 as usize) {
+        all.extend(material.textures());
+        all.extend(material.parts().filter_map(|part| part.relief).map(|relief| match relief {
             Relief::Normals { texture, .. } | Relief::Heights { texture, .. } => texture,
         }));
     }
-    // The weight of a mixture belongs to no part.
-    let mut mixed = material.blend.as_deref();
-    while let Some(blend) = mixed {
-        all.extend(texture(&blend.weight));
-        mixed = blend.other.blend.as_deref();
-    }
     all
 }
 
-fn texture<T>(parameter: &Parameter<T>) -> Option<TextureId> {
-    match parameter {
-        Parameter::Constant(_) => None,
-        Parameter::Textured { texture, .. } => Some(*texture),
-    }
-}
-
-/// True if a texture has more than one colour.
+/// True if a texture has more than one colour in texture coordinates.
 fn varies(contents: &Contents, images: &[Option<DecodedImage>], texture: TextureId) -> bool {
-    if let Some(number) = texture.attribute_number() {
-        let image = contents.attribute_textures.get(number).and_then(|texture| texture.image);
-        return image.is_some_and(|image| varies(contents, images, image));
-    }
+    let image_of = |number: usize| contents.attribute_textures.get(number).and_then(|texture| texture.image);
+    let Some(texture) = texture.attribute_number().map_or(Some(texture), image_of) else { return false };
     let at = texture.0 as usize;
     let image = match contents.textures.get(at).map(|plan| &plan.image) {
         Some(TextureSource::Ready(_, image)) => Some(image),

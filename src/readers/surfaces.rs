@@ -1,5 +1,6 @@
 //! Meshes of a plan in world coordinates, with the material of each part.
 
+use crate::attributes;
 use crate::draft::DraftMesh;
 use crate::error::Warning;
 use crate::mesh::material_parts::split_by_material;
@@ -22,8 +23,14 @@ pub(crate) fn finish_mesh(plan: &MeshPlan, raw: RawMesh, remarks: &mut Vec<Warni
             vec![(plan.name.clone(), Appearance { material: *material, emission: None }, raw)]
         }
         MaterialPlan::ByName(appearances, other) => {
+            let has_colours = attributes::find(&raw.attributes, attributes::COLOUR).is_some();
             let parts = split_by_material(raw);
-            remarks.extend(undefined_materials(plan, appearances, parts.iter().map(|part| part.0.as_str())));
+            remarks.extend(undefined_materials(
+                plan,
+                appearances,
+                has_colours,
+                parts.iter().map(|part| part.0.as_str()),
+            ));
             let unknown = Appearance { material: *other, emission: None };
             let appearance = |name: &str| appearances.get(name).copied().unwrap_or(unknown);
             let named =
@@ -59,6 +66,7 @@ fn fill_uvs(uvs: &mut [Vec2]) -> bool {
 fn undefined_materials<'a>(
     plan: &MeshPlan,
     defined: &BTreeMap<String, Appearance>,
+    has_colours: bool,
     parts: impl Iterator<Item = &'a str>,
 ) -> Option<Warning> {
     let missing: Vec<&str> = parts.filter(|name| !defined.contains_key(*name)).collect();
@@ -70,11 +78,14 @@ fn undefined_materials<'a>(
     let mesh = &plan.name;
     let what = match (missing.is_empty(), listed.is_empty()) {
         (true, _) => return None,
+        // Colours of vertices are a material.
+        (false, true) if has_colours => return None,
         (false, true) if defined.is_empty() => "neither the mesh nor its file has a material".to_owned(),
         (false, true) => format!("faces of \"{mesh}\" have no material"),
         (false, false) => {
             format!("materials that \"{mesh}\" uses are not in its libraries: {}", listed.join(", "))
         }
     };
-    Some(Warning::new(plan.place.clone(), what, "a grey of 0.5 stands in"))
+    let fallback = if has_colours { "colours of vertices stand in" } else { "a grey of 0.5 stands in" };
+    Some(Warning::new(plan.place.clone(), what, fallback))
 }

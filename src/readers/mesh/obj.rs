@@ -15,7 +15,7 @@
 //! - It splits the mesh at `o`, `g` and `usemtl`, so vertices are no longer shared and smooth normals change.
 
 use super::obj_statements::Unread;
-use super::wavefront::{name, numbers, split_word, statements, values};
+use super::wavefront::{is_coloured, name, numbers, split_word, statements, values};
 use super::{RawMesh, polygon};
 use crate::attributes::{NamedAttribute, VERTEX_COLOUR};
 use crate::decode::srgb_to_linear;
@@ -52,19 +52,6 @@ pub fn read(
     let (has_faces, has_normals) = (!reader.mesh.triangles.is_empty(), !reader.normals.is_empty());
     reader.unread.report(path, has_faces, has_normals, remarks);
     Ok(reader.finish())
-}
-
-/// Returns true if a position in the OBJ text `bytes` has a colour.
-pub(crate) fn has_colours(bytes: &[u8]) -> bool {
-    statements(bytes).any(|(_, statement)| {
-        let (word, rest) = split_word(&statement);
-        word == b"v" && is_coloured(rest)
-    })
-}
-
-/// Returns true if the numbers of a position have a colour after them.
-fn is_coloured(rest: &[u8]) -> bool {
-    values(rest).count() >= 6
 }
 
 #[derive(Default)]

@@ -1,6 +1,6 @@
 //! Names that an OBJ file refers to: material libraries and materials.
 
-use super::wavefront::{name, split_word, statements};
+use super::wavefront::{is_coloured, name, split_word, statements};
 use std::collections::BTreeSet;
 use std::path::PathBuf;
 
@@ -11,6 +11,8 @@ pub(crate) struct References {
     pub libraries: Vec<(u32, String)>,
     /// Names of the materials that the faces use.
     pub materials: BTreeSet<String>,
+    /// True if a position has a colour.
+    pub has_colours: bool,
 }
 
 /// Returns the names that the OBJ text `bytes` refers to.
@@ -27,6 +29,7 @@ pub(crate) fn references(bytes: &[u8]) -> References {
             (b"usemtl", rest) => {
                 found.materials.insert(name(rest));
             }
+            (b"v", rest) if !found.has_colours => found.has_colours = is_coloured(rest),
             _ => {}
         }
     }
@@ -111,5 +114,6 @@ mod tests {
         let found = references(text.as_bytes());
         assert_eq!(found.libraries, [(1, "a.mtl".to_owned()), (2, "b.mtl  c.mtl".to_owned())]);
         assert_eq!(found.materials.into_iter().collect::<Vec<_>>(), ["", "x"]);
+        assert!(!found.has_colours && references(b"v 0 0 0 1\nv 0 0 0 1 1 1 # red").has_colours);
     }
 }

@@ -11,7 +11,7 @@ const fn statement(name: &'static str, fate: Fate, note: &'static str) -> Statem
 
 /// Statements of OBJ files. Those that say `off` or `0` have no effect.
 pub(super) const OBJ: &[Statement] = &[
-    statement("v", Fate::Read, "position"),
+    statement("v", Fate::Read, "position; the last three of six numbers are a colour"),
     statement("vn", Fate::Read, "normal"),
     statement("vt", Fate::Read, "texture coordinates; the third has no effect"),
     statement("f", Fate::Read, "polygon"),

@@ -106,6 +106,11 @@ pub(super) fn numbers<const N: usize>(rest: &[u8]) -> Result<[f64; N], String> {
     Ok(values)
 }
 
+/// True if the numbers of a position have a colour behind them.
+pub(super) fn is_coloured(rest: &[u8]) -> bool {
+    values(rest).count() >= 6
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

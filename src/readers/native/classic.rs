@@ -7,7 +7,7 @@
 //! - 3 and 5 are mirrors over a Lambert base, if Kd and Ks are at most 1 together. Else they are metals of reflectance
 //!   Kd. Blender writes 3 for metals, with the share of metal as a grey Ka, and Ns = 1000 (1 - roughness)².
 //! - 6 and 7 are glass of index Ni (1.5). They are glass with Ni = 1 only beside Tf.
-//! - 4 and 9 are glass if Ni is given and not 1, or there is no Kd. Else they are as 2. Maya writes 4 for every surface.
+//! - 4 and 9 are glass if Ni is given and not 1, or there is no Kd. Else they are as 2. Maya writes 4 everywhere.
 //! - A d below 1 or map_d makes holes. Then 6 is as 3, and 4, 7 and 9 are as 2. Only if Tf and Ni speak of glass beside
 //!   6 or 7, it stays glass without holes.
 //! - Keywords of the extension for physically based rendering make a principled material.

@@ -6,7 +6,6 @@ use crate::attributes::COLOUR;
 use crate::error::{Location, SceneError};
 use crate::file::{fnv1a, folder_of, read_file};
 use crate::mesh::mtl;
-use crate::mesh::obj;
 use crate::mesh::obj_references::{References, listed_files, references};
 use crate::plan::Appearance;
 use base::math::Rgb;
@@ -24,8 +23,7 @@ impl SceneBuilder<'_> {
         unit: f32,
     ) -> Result<(BTreeMap<String, Appearance>, bool), SceneError> {
         let text = read_file(path, place)?;
-        let has_colours = obj::has_colours(&text);
-        let References { libraries, materials } = references(&text);
+        let References { libraries, materials, has_colours } = references(&text);
         let mut appearances = BTreeMap::new();
         let mut read = BTreeSet::new();
         for (line, text) in libraries {
