@@ -1,5 +1,6 @@
 //! Decompression of primitives: the extension `KHR_draco_mesh_compression`, with the crate `draco-core`.
 
+use base::stats::available_bytes;
 use draco_core::{DataType, DecodeLimits, DecoderBuffer, Mesh, MeshDecoder, PointAttribute, PointIndex};
 use gltf_json::accessor::{Accessor, ComponentType};
 use gltf_json::mesh::Primitive;
@@ -57,16 +58,19 @@ fn decode(
     bytes: &[u8],
     accessors: &mut BTreeMap<usize, Vec<u8>>,
 ) -> Result<(), String> {
-    let limits = DecodeLimits::default().with_max_decoded_bytes(MAX_DECODED_BYTES);
-    let mut mesh = Mesh::new();
-    let decoded = MeshDecoder::new().decode(&mut DecoderBuffer::new(bytes).with_limits(limits), &mut mesh);
-    decoded.map_err(|error| format!("cannot be decoded: {error}"))?;
     let accessor = |index: Index<Accessor>| {
         let accessor = root.accessors.get(index.value());
         accessor.ok_or_else(|| format!("is that of accessor {}, which does not exist", index.value()))
     };
     let index = primitive.indices.ok_or("has no accessor of indices")?;
-    let size = match component(accessor(index)?) {
+    let indices = accessor(index)?;
+    // A few bytes may stand for millions of equal values.
+    let most = available_bytes().map_or(MAX_DECODED_BYTES, |bytes| MAX_DECODED_BYTES.min(bytes / 4));
+    let limits = DecodeLimits::default().with_max_decoded_bytes(most).with_max_faces(indices.count.0 / 3);
+    let mut mesh = Mesh::new();
+    let decoded = MeshDecoder::new().decode(&mut DecoderBuffer::new(bytes).with_limits(limits), &mut mesh);
+    decoded.map_err(|error| format!("cannot be decoded: {error}"))?;
+    let size = match component(indices) {
         Some(kind @ (ComponentType::U8 | ComponentType::U16 | ComponentType::U32)) => kind.size(),
         _ => return Err("has indices of a wrong type".into()),
     };

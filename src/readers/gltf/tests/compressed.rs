@@ -111,3 +111,39 @@ fn textures_may_be_webp() {
     model.json["textures"][0] = json!({ "source": model.json["textures"][png]["source"], "extensions": { "KHR_texture_basisu": { "source": 0 } } });
     assert_eq!(warnings(&load_bytes("m.glb", &model.glb()).unwrap()), 0);
 }
+
+#[test]
+fn quantised_vertices_are_of_any_type_of_component() {
+    for (component, size, most) in
+        [(5120u32, 1, 127.0), (5121, 1, 255.0), (5122, 2, 32767.0), (5123, 2, 65535.0)]
+    {
+        for is_normalized in [false, true] {
+            let mut model = Model::new();
+            let pack = |vectors: &[[i16; 4]]| -> Vec<u8> {
+                let values = vectors.iter().flatten();
+                values.flat_map(|v| v.to_le_bytes().into_iter().take(size)).collect()
+            };
+            let mut add = |vectors: &[[i16; 4]], kind: &str| {
+                let accessor = model.accessor(&pack(vectors), component, kind, vectors.len());
+                let view = model.json["accessors"][accessor]["bufferView"].as_u64().unwrap() as usize;
+                model.json["bufferViews"][view]["byteStride"] = json!(4 * size);
+                model.json["accessors"][accessor]["normalized"] = json!(is_normalized);
+                accessor
+            };
+            let positions = add(&[[0, 0, 0, 0], [100, 0, 0, 0], [0, 50, 0, 0]], "VEC3");
+            let normals = add(&[[0, 0, 100, 0]; 3], "VEC3");
+            let uvs = add(&[[0, 0, 0, 0], [100, 0, 0, 0], [0, 100, 0, 0]], "VEC2");
+            let attributes = json!({ "POSITION": positions, "NORMAL": normals, "TEXCOORD_0": uvs });
+            let mesh = model.push("meshes", json!({ "primitives": [{ "attributes": attributes }] }));
+            model.node(json!({ "mesh": mesh }));
+            model.push("extensionsRequired", json!("KHR_mesh_quantization"));
+            let loaded = load_bytes("m.glb", &model.glb()).unwrap();
+            let (mesh, unit) = (&loaded.scene.meshes[0], if is_normalized { 1.0 / most } else { 1.0 });
+            let [a, b, c] = mesh.corners(0);
+            assert!((b - a).distance(Vec3::X * 100.0 * unit) < 1e-4 * unit, "{component} {is_normalized}");
+            assert!((c - a).distance(Vec3::Y * 50.0 * unit) < 1e-4 * unit, "{component} {is_normalized}");
+            assert!(mesh.normals[0].distance(Vec3::Z) < 1e-6);
+            assert!((mesh.uvs[1].x - 100.0 * unit).abs() < 1e-4 * unit);
+        }
+    }
+}
