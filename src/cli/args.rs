@@ -4,13 +4,14 @@ use super::bench_args::BenchArgs;
 use super::denoise_args::{DenoiseArgs, DenoiseFileArgs};
 use super::develop::DevelopArgs;
 use super::exit;
-use super::generate::GenerateArgs;
+use super::generate_args::GenerateArgs;
 use super::method_args::MethodArgs;
 use super::plan_args::{PlanArgs, Quality};
 use super::png_args::{PngArgs, ToneArgs};
 use super::reading_args::ReadingArgs;
-use super::still_files::ImageFormat;
-use super::values::{Bytes, Crop, Loudness, ProgressMode, Resolution, counted, feature, q_scale};
+use super::values::{
+    Bytes, Crop, ImageFormat, Loudness, ProgressMode, Resolution, counted, feature, q_scale,
+};
 use super::version;
 use clap::{Arg, ArgGroup, Args, CommandFactory, FromArgMatches, Parser, Subcommand, ValueEnum};
 use render::session::Feature;
@@ -92,9 +93,9 @@ pub enum Command {
 pub struct RenderArgs {
     /// Scene: glTF (.glb, .gltf), a mesh (.obj, .ply, .stl), native (.toml) or Mitsuba (.xml)
     pub scene: PathBuf,
-    /// Image to write: 32-bit float OpenEXR with metadata, and with variance if it is known, or a tone-mapped PNG alone;
-    /// `-` for standard output; `####` or `%04d` in the name stands for the number of `--frame` [default: the scene's
-    /// name with .exr, in the current folder]
+    /// Image to write: 32-bit float OpenEXR with metadata, and with variance if it is known, or a tone-mapped PNG
+    /// alone; `-` for standard output; `####` or `%04d` in the name stands for the number of `--frame` [default: the
+    /// scene's name with .exr, in the current folder]
     #[arg(short, long, value_name = "FILE.exr|FILE.png|-")]
     pub output: Option<PathBuf>,
     /// Format of standard output

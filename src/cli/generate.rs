@@ -2,35 +2,14 @@
 
 use super::args::Cli;
 use super::exit::Failure;
+use super::generate_args::{Artefact, GenerateArgs};
 use super::talk;
 use anyhow::Context;
-use clap::{Args, ValueEnum};
 use clap_complete::{Shell, generate};
 use clap_mangen::Man;
 
 /// Name of the program.
 const NAME: &str = "lightsplat";
-
-/// Options of `generate`.
-#[derive(Debug, Args)]
-pub struct GenerateArgs {
-    /// Text to print
-    #[arg(value_enum)]
-    what: Artefact,
-}
-
-/// Text about the options.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum Artefact {
-    /// Completions for bash
-    Bash,
-    /// Completions for zsh
-    Zsh,
-    /// Completions for fish
-    Fish,
-    /// The man page, with one section per command
-    Man,
-}
 
 /// Runs the command.
 pub fn run(args: GenerateArgs) -> Result<(), Failure> {

@@ -24,6 +24,7 @@ mod doc_links;
 mod exit;
 mod files;
 mod generate;
+mod generate_args;
 mod info;
 mod interrupt;
 mod job;

@@ -3,26 +3,16 @@
 use super::args::RenderArgs;
 use super::exit::Failure;
 use super::outputs::{self, check_name};
+use super::values::ImageFormat;
 use super::{picture, talk};
 use anyhow::{Context, anyhow};
 use base::film::Tone;
-use clap::ValueEnum;
 use render::walk::names;
 use std::ffi::OsStr;
 use std::fs;
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use tempfile::TempDir;
-
-/// Format of an image on standard output.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
-pub enum ImageFormat {
-    /// Tone-mapped PNG
-    #[default]
-    Png,
-    /// 32-bit float OpenEXR
-    Exr,
-}
 
 /// Files of a still. At least one of both is written.
 #[derive(Debug)]

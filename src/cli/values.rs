@@ -20,6 +20,16 @@ pub enum ProgressMode {
     None,
 }
 
+/// Format of an image on standard output.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum ImageFormat {
+    /// Tone-mapped PNG
+    #[default]
+    Png,
+    /// 32-bit float OpenEXR
+    Exr,
+}
+
 /// Number of messages for people.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Loudness {

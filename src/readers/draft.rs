@@ -72,8 +72,6 @@ pub(crate) struct DraftMesh {
     /// True if the file has no texture coordinates for some triangles.
     pub lacks_uvs: bool,
     pub attributes: Vec<NamedAttribute>,
-    /// True if the file has no texture coordinates for some triangles.
-    pub lacks_uvs: bool,
 }
 
 impl DraftMesh {

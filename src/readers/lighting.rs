@@ -59,10 +59,10 @@ impl UpAxis {
 pub enum EnvironmentChoice {
     /// Latitude-longitude map in a file.
     Map(PathBuf),
-    /// The same radiance from all directions, W/(sr m²).
+    /// Equal radiance from all directions, W/(sr m²).
     Constant(Rgb),
-    /// Clear sky with the sun at an azimuth and an elevation in degrees, over level ground. The irradiance of the ground
-    /// is π.
+    /// Clear sky with the sun at an azimuth and an elevation in degrees, over level ground. The irradiance of the
+    /// ground is π.
     Sky([f64; 2]),
 }
 
@@ -119,7 +119,7 @@ pub struct Lighting {
 }
 
 impl Lighting {
-    /// Replaces the environment of a scene at `path`. A model without a lamp gets the default sky, of which a note tells.
+    /// Replaces the environment of a scene at `path`. A model without a lamp gets the default sky, and a note says so.
     pub(crate) fn apply(
         &self,
         contents: &mut Contents,

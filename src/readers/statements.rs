@@ -1,9 +1,9 @@
-//! What becomes of each statement of a format: it is read, named or refused.
+//! Fates of the statements of a format: each is read, named or refused.
 //!
 //! Each reader lists its statements. The page `docs/formats.md` has one table for each list, and a test holds the two
 //! against each other.
 
-/// What a reader does with a statement.
+/// Fate of a statement in a reader.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Fate {
     /// The picture follows the statement.
@@ -22,13 +22,13 @@ pub(crate) enum Fate {
 pub(crate) struct Statement {
     /// Name in the file.
     pub name: &'static str,
-    /// What becomes of it.
+    /// Fate in the reader.
     pub fate: Fate,
     /// Meaning, or what stands in, in a few words.
     pub note: &'static str,
 }
 
-/// Returns what becomes of the statement `name`; a statement that is not listed is named.
+/// Returns the fate of the statement `name`; a statement that is not listed is named.
 pub(crate) fn fate(statements: &[Statement], name: &str) -> Fate {
     statements.iter().find(|statement| statement.name == name).map_or(Fate::Named, |found| found.fate)
 }

@@ -20,8 +20,8 @@ pub struct Viewpoint {
     pub at: Option<DVec3>,
     /// Horizontal field of view in degrees.
     pub fov: Option<f64>,
-    /// Azimuth and elevation in degrees of a camera that sees the whole scene. The azimuth counts from the front towards
-    /// the viewer's right.
+    /// Azimuth and elevation in degrees of a camera that sees the whole scene. The azimuth counts from the front
+    /// towards the viewer's right.
     pub around: Option<[f64; 2]>,
 }
 

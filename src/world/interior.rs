@@ -1,6 +1,7 @@
 //! Absorption inside glass, by Beer's law: light that goes the way d inside keeps the share exp(-σ d).
 //!
-//! The inside of glass that absorbs is behind its surface. Nothing stores in which bodies a point lies. An edge of a path
+//! The inside of glass that absorbs is behind its surface. Nothing stores in which bodies a point lies. An edge of a
+//! path
 //! is inside if it starts on the inside of such a surface, or else if it ends there. Sheets on the way divide the edge,
 //! and leave the interior as it is unless they absorb themselves.
 //!
@@ -160,7 +161,7 @@ mod tests {
             for (from, to, first, second, veils) in [
                 (-1.0, 4.0, 1.0, 1.0, 2),
                 (4.0, -1.0, 1.0, 1.0, 2),
-                // From 0.25 to the veil at 0.6, the segment neither starts nor ends on glass.
+                // Between 0.25 and the veil at 0.6, the segment neither starts nor ends on glass.
                 (0.25, 4.0, 0.4, 1.0, 2),
                 (0.7, 4.0, 0.3, 1.0, 1),
                 (-1.0, 0.8, 0.8, 0.0, 1),

@@ -7,7 +7,7 @@ use std::fs;
 /// A square on the ground, and a wall behind it.
 const CORNER: &str = "v -1 0 1\nv 1 0 1\nv 1 0 -1\nv -1 0 -1\nv -1 2 -1\nv 1 2 -1\nf 1 2 3 4\nf 4 3 6 5\n";
 
-/// The same square with two triangles, as text of STL, standing on z.
+/// A square of two triangles, as text of STL, standing on z.
 const STL: &str = "solid a\nfacet normal 0 0 1\nouter loop\nvertex -1 -1 0\nvertex 1 -1 0\nvertex 1 1 0\nendloop\nendfacet\n\
     facet normal 0 0 1\nouter loop\nvertex -1 -1 0\nvertex 1 1 0\nvertex -1 1 0\nendloop\nendfacet\nendsolid a\n";
 
@@ -94,7 +94,7 @@ fn environments_and_cameras_come_from_the_command_line() {
         render(&sandbox, "corner.obj", &[more, &["-o", "a.exr"]].concat()).expect(0);
         read_exr(&sandbox.path("a.exr")).unwrap()
     };
-    // From above, at a distance where the square covers all of the film, in an even light of 2.
+    // The camera stands above, at a distance where the square covers all of the film, in an even light of 2.
     let above = ["--look-from", "0,9,0", "--look-at", "0,0,0", "--fov", "4"];
     let even = picture(&[&above[..], &["--env", "2", "--max-depth", "2"]].concat());
     // The wall hides a part of the sky behind the square, so less than .5 x 2 arrives.

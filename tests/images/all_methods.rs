@@ -23,7 +23,7 @@ const TOLERANCE: f64 = 0.03;
 type NamedScene = (&'static str, fn() -> WorldAndView);
 
 /// Scenes of mean 1, each with the reason.
-const SCENES: [NamedScene; 20] = [
+const SCENES: [NamedScene; 21] = [
     ("nothing before a sky of radiance 1", || {
         let mut scene = scene(camera(Vec3::ZERO, Vec3::X, 0.5), [8, 8]);
         scene.environment = Some(Environment::Constant(Rgb::ONE));
@@ -195,22 +195,22 @@ const SCENES: [NamedScene; 20] = [
     }),
 ];
 
-            /// Adds the parallel square over the floor. Its material covers the share `opacity` of it on average.
-            fn square_lamp(scene: &mut Scene, material: MaterialId, opacity: f32) {
-                let (h, d) = (0.5f32, 2.0f32);
-                let a = h / d;
-                let corner_factor = a / (1.0 + a * a).sqrt() * (a / (1.0 + a * a).sqrt()).atan() / PI;
-                let lamp = quad(Vec3::new(-h, d, -h), Vec3::X * 2.0 * h, Vec3::Z * 2.0 * h, material);
-                let radiance = IRRADIANCE / (PI * 4.0 * corner_factor) / opacity;
-                scene.meshes.push(emitting(textured(lamp, Vec2::ONE), Rgb::splat(radiance)));
-            }
+/// Adds the parallel square over the floor. Its material covers the share `opacity` of it on average.
+fn square_lamp(scene: &mut Scene, material: MaterialId, opacity: f32) {
+    let (h, d) = (0.5f32, 2.0f32);
+    let a = h / d;
+    let corner_factor = a / (1.0 + a * a).sqrt() * (a / (1.0 + a * a).sqrt()).atan() / PI;
+    let lamp = quad(Vec3::new(-h, d, -h), Vec3::X * 2.0 * h, Vec3::Z * 2.0 * h, material);
+    let radiance = IRRADIANCE / (PI * 4.0 * corner_factor) / opacity;
+    scene.meshes.push(emitting(textured(lamp, Vec2::ONE), Rgb::splat(radiance)));
+}
 
-            /// Adds a texture that is black on the left and white on the right, with a ramp between them.
-            fn ramp(scene: &mut Scene, filter: Filter) -> Share {
-                let texels = [Rgb::ZERO, Rgb::ONE];
-                let ramp = Texture { filter, wrap: Wrap::Clamp, ..texture(2, &texels) };
-                Share::Textured { texture: add_texture(scene, ramp), scale: 1.0 }
-            }
+/// Adds a texture that is black on the left and white on the right, with a ramp between them.
+fn ramp(scene: &mut Scene, filter: Filter) -> Share {
+    let texels = [Rgb::ZERO, Rgb::ONE];
+    let ramp = Texture { filter, wrap: Wrap::Clamp, ..texture(2, &texels) };
+    Share::Textured { texture: add_texture(scene, ramp), scale: 1.0 }
+}
 
 /// Adds two sheets, one behind the other, whose opacity is a ramp. Where they are there, they emit what they absorb.
 fn leaves(scene: &mut Scene, filter: Filter) {

@@ -75,7 +75,7 @@ fn lamps_show_in_brushed_metal_as_paths_see_them() {
         scene.meshes[0] = textured(floor, Vec2::ONE);
         scene
     };
-    let (along, across) = (brushed([0.5, 0.06]), brushed([0.06, 0.5]));
+    let (along, across) = (brushed([0.5, 0.06].map(Into::into)), brushed([0.06, 0.5].map(Into::into)));
     let [of_along, of_across] = [&along, &across].map(|scene| by_cuts(&world(scene.clone())));
     let difference = relative_rms(&of_along, &of_across);
     assert!(difference > 0.5, "{difference}");

@@ -140,7 +140,7 @@ mod tests {
 
     #[test]
     fn filmic_and_agx_have_their_published_values() {
-        // Hable's curve: black stays, 11.2 / 2 is white; at .5 the value is f(1) / f(11.2), with f(1) = .2 / .71 - 1/15.
+        // Hable's curve: black stays, 11.2 / 2 is white. At .5 the value is f(1) / f(11.2).
         assert!(filmic(Rgb::ZERO).length() < 1e-6);
         assert!((filmic(Rgb::splat(5.6)) - Rgb::ONE).length() < 1e-5);
         let f = |x: f64| (x * (0.15 * x + 0.05) + 0.004) / (x * (0.15 * x + 0.5) + 0.06) - 1.0 / 15.0;

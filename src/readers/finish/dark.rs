@@ -3,7 +3,8 @@
 use base::math::Rgb;
 use scene::{Emission, MaterialId, Scene, Share, Texture, TextureId};
 
-/// Returns true if a surface of the given emission and material gives no light: if the emission is black, or the surface
+/// Returns true if a surface of the given emission and material gives no light: if the emission is black, or the
+/// surface
 /// is nowhere there.
 pub(super) fn is_dark_emission(emission: &Emission, material: MaterialId, scene: &Scene) -> bool {
     let is_black = |id: TextureId| scene.textures.by_id(id).is_some_and(Texture::is_black);

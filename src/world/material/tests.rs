@@ -144,7 +144,7 @@ fn sheets() -> Vec<Material> {
     };
     let matte = Principled { sheen: 0.6.into(), sheen_tint: 0.5.into(), ..of(0.4, 0.0, 0.4) };
     let glossy = Principled { spec_tint: 0.3.into(), sheen: 0.3.into(), eta: 1.4, ..of(0.6, 0.7, 0.5) };
-    let clear = Principled { anisotropic: 0.5, eta: 1.6, ..of(0.0, 1.0, 0.45) };
+    let clear = Principled { anisotropic: 0.5.into(), eta: 1.6, ..of(0.0, 1.0, 0.45) };
     let two_sided = |name: &str, p: Principled| Material { two_sided: true, ..principled(name, p) };
     vec![two_sided("thin_matte", matte), two_sided("thin_glossy", glossy), two_sided("thin_clear", clear)]
 }

@@ -1,4 +1,5 @@
-//! Valid files with one statement more, which no reader knows: a warning or an error tells it, unless it cannot change a
+//! Valid files with one statement more, which no reader knows: a warning or an error tells it, unless it cannot change
+//! a
 //! picture.
 //!
 //! Comments, `extras`, names that a format reserves for other programs, and channels of an image besides its picture
