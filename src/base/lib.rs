@@ -3,10 +3,11 @@
 //! - [`math`]: colours, frames, lanes and real functions; [`sampling`]: random numbers;
 //! - [`parallel`], [`progress`], [`stats`]: threads, cancellation, counters and times;
 //! - [`setting`]: settings, each declared once; [`kd_tree`]: search for near points;
-//! - [`film`]: images, their layers, files and error measures.
+//! - [`exr_file`]: reader of OpenEXR files; [`film`]: images, their layers, files and error measures.
 
 #![forbid(unsafe_code)]
 
+pub mod exr_file;
 pub mod film;
 pub mod kd_tree;
 pub mod math;

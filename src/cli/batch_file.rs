@@ -1,14 +1,13 @@
 //! Job files of batches: images and walks in TOML, each with the options of its command.
 //!
-//! An entry becomes the arguments of `render`, or of `walk` if the name of its file has a placeholder for a number. So
-//! a job file may hold every option of these commands, with the same meaning.
+//! An entry becomes the arguments of `walk` if the name of its file has a placeholder for a number and no `frame` is
+//! given, else of `render`. So a job file may hold every option of these commands, with the same meaning.
 
 use super::args::{Cli, Command};
 use super::exit::Failure;
 use anyhow::{Context, anyhow};
 use clap::error::{ContextKind, ContextValue};
-use readers::LoadOptions;
-use readers::read_regular;
+use readers::{EnvironmentChoice, LoadOptions, read_regular};
 use render::walk::FileNames;
 use serde::Deserialize;
 use std::collections::BTreeMap;
@@ -23,7 +22,7 @@ use toml::{Spanned, Table, Value};
 const OF_THE_BATCH: [&str; 2] = ["threads", "progress"];
 
 /// Options that name a file.
-const FILES: [&str; 1] = ["png"];
+const FILES: [&str; 2] = ["png", "env"];
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -149,7 +148,8 @@ pub fn read(path: &Path, more: &[&str]) -> Result<Vec<JobEntry>, Failure> {
 impl JobEntry {
     /// Adds options to the entry. Those that name files are relative to `folder`.
     fn with(mut self, folder: &Path, options: &Table, more: &[&str]) -> Result<JobEntry, Failure> {
-        let is_walk = self.output.to_str().is_some_and(|name| name.parse::<FileNames>().is_ok());
+        let has_place = self.output.to_str().is_some_and(|name| name.parse::<FileNames>().is_ok());
+        let is_walk = has_place && !options.contains_key("frame");
         let command = if is_walk { "walk" } else { "render" };
         let mut arguments: Vec<OsString> = ["lightsplat", command].map(OsString::from).into();
         arguments.extend([self.scene.clone().into(), "-o".into(), self.output.clone().into()]);
@@ -159,7 +159,7 @@ impl JobEntry {
                 return Err(self.wrong(name, &remedy));
             }
             match value {
-                Value::String(file) if FILES.contains(&name.as_str()) => {
+                Value::String(file) if FILES.contains(&name.as_str()) && is_file(name, file) => {
                     let mut argument = OsString::from(format!("--{name}="));
                     argument.push(folder.join(file));
                     arguments.push(argument);
@@ -180,6 +180,11 @@ impl JobEntry {
         };
         Ok(self)
     }
+}
+
+/// Returns true if the value of an option that may name a file does.
+fn is_file(name: &str, value: &str) -> bool {
+    name != "env" || matches!(value.parse(), Ok(EnvironmentChoice::Map(_)))
 }
 
 /// Returns the arguments of an option.
@@ -213,6 +218,7 @@ fn scalar(value: &Value) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::still_files::StillFiles;
     use render::method::Method;
 
     fn entries(text: &str) -> Result<Vec<JobEntry>, Failure> {
@@ -237,9 +243,17 @@ mod tests {
             output = "out/b.##.exr"
             frames = "1-4"
             define = ["X=1", "Y=2"]
+            [[picture]]
+            scene = "b.xml"
+            output = "out/still.##.exr"
+            frame = 3
             "#,
         )
         .unwrap();
+        let Command::Render(frame) = found[2].command().unwrap() else { panic!("{found:?}") };
+        let files = StillFiles::new(&frame).unwrap();
+        let png = files.png.unwrap().0;
+        assert!(files.exr.unwrap().ends_with("out/still.03.exr") && png.ends_with("out/still.03.png"));
         let Command::Render(still) = found[0].command().unwrap() else { panic!("{found:?}") };
         assert_eq!(still.method.method().unwrap().spp(), 2);
         let Method::Cache(settings) = still.method.method().unwrap() else { panic!("{still:?}") };

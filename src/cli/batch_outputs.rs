@@ -3,6 +3,7 @@
 use super::args::Command;
 use super::batch_file::JobEntry;
 use super::exit::Failure;
+use super::still_files::StillFiles;
 use anyhow::anyhow;
 use base::film::atomic;
 use render::walk::FileNames;
@@ -16,7 +17,12 @@ pub fn check_apart(entries: &[JobEntry]) -> Result<(), Failure> {
     let mut walks: BTreeMap<PathBuf, [Option<&JobEntry>; 2]> = BTreeMap::new();
     for entry in entries {
         // The check of an entry reports its other errors.
-        let (Ok(command), Ok(target)) = (entry.command(), atomic::resolve(&entry.output)) else { continue };
+        let Ok(command) = entry.command() else { continue };
+        let output = match &command {
+            Command::Render(args) => StillFiles::new(args).map(|files| files.main().to_owned()).ok(),
+            _ => Some(entry.output.clone()),
+        };
+        let Some(Ok(target)) = output.map(|path| atomic::resolve(&path)) else { continue };
         let mut files = vec![target.clone()];
         if let Command::Walk(args) = command {
             let Some(Ok(names)) = target.to_str().map(str::parse::<FileNames>) else { continue };

@@ -13,7 +13,7 @@ use std::path::Path;
 /// Runs the command.
 pub fn run(args: CompareArgs) -> Result<(), Failure> {
     if let Some(path) = &args.heatmap {
-        check_name(path, "png", "--heatmap")?;
+        check_name(path, "png", "--heatmap", "for PNG")?;
         atomic::check_writable(path).map_err(Failure::output)?;
         let variances = args.variance_a.iter().chain(&args.variance_b);
         Inputs::new([&args.test, &args.reference].into_iter().chain(variances))
@@ -47,7 +47,7 @@ fn read(path: &Path, variance: Option<&Path>) -> Result<(Image, Option<Image>), 
     if file.metadata().text("partial") == Some("true") {
         talk::warning(&format!("{} is partial: its rendering was interrupted", path.display()));
     }
-    let image = finite(file.color(), path)?;
+    let image = finite(file.color().and_then(|image| file.to_rec_709(image)), path)?;
     let variance = match variance {
         Some(path) => Some(not_negative(ExrFile::read(path).and_then(|file| file.color()), path)?),
         None if file.layers().iter().any(|layer| layer == "variance") => {

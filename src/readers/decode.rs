@@ -1,9 +1,11 @@
-//! Decoding of image files to linear colour: PNG, JPEG, BMP and TGA with the crate `image`, Radiance HDR, and OpenEXR.
+//! Decoding of image files to linear colour: PNG, JPEG, WebP, BMP and TGA with the crate `image`, Radiance HDR, and
+//! OpenEXR.
 //!
 //! Images of 8 or 16 bits are sRGB unless read raw. Floating-point images are linear. Alpha is dropped, as in Mitsuba.
 
 use super::budget::lacking;
 use super::error::{Location, SceneError};
+use base::exr_file::{ExrPicture, ExrSource, read_picture};
 use base::math::Rgb;
 use image::{DynamicImage, ImageDecoder};
 use scene::Texels;
@@ -45,6 +47,8 @@ pub(crate) enum Channel {
     /// One channel, without decoding from sRGB, as a grey of 8 bits. 0 to 3 stand for red, green, blue and alpha; a
     /// missing channel is 1.
     One(usize),
+    /// Alpha as a grey, or all channels without decoding from sRGB where the image has no alpha.
+    AlphaOrData,
     /// 1 if alpha is at least the value, else 0.
     AlphaFrom(f32),
 }
@@ -71,7 +75,7 @@ pub fn decode(
     place: &Location,
 ) -> Result<DecodedImage, SceneError> {
     let image = if bytes.starts_with(&[0x76, 0x2F, 0x31, 0x01]) {
-        decode_exr(bytes)
+        decode_exr(bytes, channel)
     } else {
         decode_common(bytes, channel, path)
     };
@@ -85,44 +89,18 @@ pub fn decode(
     })
 }
 
-fn decode_exr(bytes: &[u8]) -> Result<DecodedImage, Refusal> {
-    use exr::prelude::*;
-    // The size is checked before any allocation that depends on it.
-    let meta = exr::meta::MetaData::read_from_buffered(Cursor::new(bytes), false)?;
-    for header in &meta.headers {
-        let (width, height) = (header.layer_size.width(), header.layer_size.height());
-        let of_channels = 4 * header.channels.list.len() as u64;
-        check_size(width, height, of_channels + LONG_PIXEL_BYTES, bytes)?;
-    }
-    // Mitsuba names luminance images Y, and `rgb_channels` rejects them.
-    let image = read()
-        .no_deep_data()
-        .largest_resolution_level()
-        .all_channels()
-        .first_valid_layer()
-        .all_attributes()
-        .from_buffered(Cursor::new(bytes))?;
-    let layer = image.layer_data;
-    let (width, height) = (layer.size.width(), layer.size.height());
-    let find = |names: &[&str]| {
-        let list = &layer.channel_data.list;
-        list.iter().find(|c| {
-            let name = c.name.to_string();
-            names.contains(&name.rsplit('.').next().unwrap_or(&name))
-        })
+/// Decodes the picture of an OpenEXR file; see [`base::exr_file::read_picture`]. Its alpha is never read.
+fn decode_exr(bytes: &[u8], channel: Channel) -> Result<DecodedImage, Refusal> {
+    let mut source = ExrSource::open(Cursor::new(bytes))?;
+    let check = |[width, height]: [usize; 2], of_file: u64| {
+        check_size(width, height, of_file + LONG_PIXEL_BYTES, bytes)
     };
-    let grey = find(&["Y", "L"]);
-    let channels = [find(&["R", "r"]).or(grey), find(&["G", "g"]).or(grey), find(&["B", "b"]).or(grey)];
-    let [Some(r), Some(g), Some(b)] = channels else {
-        return Err("no R, G, B or Y channels".into());
-    };
-    let values = [r, g, b].map(|c| c.sample_data.values_as_f32().collect::<Vec<f32>>());
-    let [r, g, b] = values;
-    let texels = r.iter().zip(&g).zip(&b).map(|((&r, &g), &b)| Rgb::new(r, g, b)).collect::<Vec<_>>();
-    if texels.len() != width * height {
-        return Err("subsampled channels".into());
+    let ExrPicture { size: [width, height], mut pixels } =
+        read_picture(&mut source, channel != Channel::Colour, check)?;
+    if let Channel::One(channel @ 0..=2) = channel {
+        pixels.iter_mut().for_each(|pixel| *pixel = Rgb::splat(pixel[channel]));
     }
-    Ok(DecodedImage { width, height, texels: Texels::new(width, &texels) })
+    Ok(DecodedImage { width, height, texels: Texels::new(width, &pixels) })
 }
 
 /// Rejects sizes that no image has, that the file is too short for, or that do not fit into memory.
@@ -170,7 +148,8 @@ fn decode_common(bytes: &[u8], channel: Channel, path: &Path) -> Result<DecodedI
     };
     let raw = match channel {
         Channel::Colour => false,
-        Channel::Data => true,
+        Channel::AlphaOrData if image.color().has_alpha() => return grey(&|rgba| rgba[3]),
+        Channel::Data | Channel::AlphaOrData => true,
         Channel::One(channel) => return grey(&|rgba| rgba[channel]),
         Channel::AlphaFrom(cutoff) => {
             return grey(&|rgba| if f32::from(rgba[3]) >= 255.0 * cutoff { 255 } else { 0 });
@@ -240,6 +219,28 @@ mod tests {
         assert_eq!((sky.width, sky.height), (4, 3));
         assert_eq!(sky.texels.get(1, 0), Rgb::new(0.5, 1.0, 2.0));
         assert_eq!(sky.texels.get(0, 2), Rgb::new(2.0, 1.0, 4.0));
+    }
+
+    #[test]
+    fn the_picture_of_an_exr_is_its_colour_without_layer_and_not_the_first_layer() {
+        use exr::prelude::{AnyChannel, AnyChannels, FlatSamples, Image, WritableImage};
+        let channel = |(name, value): (&str, f32)| AnyChannel::new(name, FlatSamples::F32(vec![value; 6]));
+        let named = [("R", 0.5), ("G", 1.0), ("B", 2.0), ("A", 1.0), ("Albedo.R", 0.9), ("Albedo.G", 0.1)];
+        let layers = [("Albedo.B", 0.05), ("Ns.X", 0.0), ("Ns.Y", 1.0), ("Ns.Z", 0.0)];
+        let list = named.into_iter().chain(layers).map(channel).collect();
+        let image = Image::from_channels((3, 2), AnyChannels::sort(list));
+        let mut bytes = Cursor::new(Vec::new());
+        image.write().to_buffered(&mut bytes).unwrap();
+        let decoded = decode_file(bytes.get_ref(), false, "gbuffer.exr").unwrap();
+        assert_eq!((decoded.width, decoded.height), (3, 2));
+        assert!(decoded.texels.iter().all(|texel| texel == Rgb::new(0.5, 1.0, 2.0)));
+        // Layers alone are no picture, and the message names them.
+        let list = layers.into_iter().map(channel).collect();
+        let image = Image::from_channels((3, 2), AnyChannels::sort(list));
+        let mut bytes = Cursor::new(Vec::new());
+        image.write().to_buffered(&mut bytes).unwrap();
+        let message = decode_file(bytes.get_ref(), false, "layers.exr").unwrap_err().to_string();
+        assert!(message.contains("layers.exr") && message.contains("Ns.X"), "{message}");
     }
 
     #[test]

@@ -3,8 +3,9 @@
 //! [`crate::finish`] turns a [`Draft`] into a [`Scene`].
 
 use crate::Location;
-use glam::{DVec3, Vec2, Vec3};
-use scene::{DeltaLight, Emission, MaterialId, PixelFilter, Projection, Scene};
+use crate::attributes::NamedAttribute;
+use glam::{DVec3, Vec2, Vec3, Vec4};
+use scene::{AttributeValues, DeltaLight, Emission, MaterialId, PixelFilter, Projection, Scene};
 
 /// Width and height in pixels of films without a size.
 pub(crate) const DEFAULT_RESOLUTION: [u32; 2] = [960, 540];
@@ -61,11 +62,41 @@ pub(crate) struct DraftMesh {
     pub normals: Vec<Vec3>,
     /// Texture coordinates of each vertex, v upwards, or empty.
     pub uvs: Vec<Vec2>,
+    /// Tangent of each vertex (see [`scene::Mesh::tangents`]), or empty.
+    pub tangents: Vec<Vec4>,
     pub triangles: Vec<[u32; 3]>,
     pub material: MaterialId,
     pub emission: Option<Emission>,
     /// Number of triangles whose winding was reversed to agree with their vertex normals.
     pub turned: usize,
+    /// True if the file has no texture coordinates for some triangles.
+    pub lacks_uvs: bool,
+    pub attributes: Vec<NamedAttribute>,
+}
+
+impl DraftMesh {
+    /// Drops triangles, with the attributes of their faces. `is_kept` gets all positions and the corners' numbers.
+    pub fn retain_triangles(&mut self, mut is_kept: impl FnMut(&[DVec3], &[u32; 3]) -> bool) {
+        let (positions, triangles) = (&self.positions, &mut self.triangles);
+        let is_of_faces =
+            |attribute: &NamedAttribute| matches!(attribute.values, AttributeValues::Triangles(_));
+        if !self.attributes.iter().any(is_of_faces) {
+            return triangles.retain(|triangle| is_kept(positions, triangle));
+        }
+        let kept: Vec<bool> = triangles.iter().map(|triangle| is_kept(positions, triangle)).collect();
+        keep(triangles, &kept);
+        for attribute in &mut self.attributes {
+            if let AttributeValues::Triangles(values) = &mut attribute.values {
+                keep(values, &kept);
+            }
+        }
+    }
+}
+
+/// Keeps the values whose entry of `kept` is true.
+fn keep<T>(values: &mut Vec<T>, kept: &[bool]) {
+    let mut kept = kept.iter();
+    values.retain(|_| kept.next().copied().unwrap_or(false));
 }
 
 /// A scene whose positions are still in world coordinates.
@@ -79,6 +110,8 @@ pub struct Draft {
     pub lights: Vec<(DeltaLight, DVec3)>,
     /// Location of each material's description.
     pub material_places: Vec<Location>,
+    /// Names of the attributes that textures look up, by number.
+    pub attribute_names: Vec<String>,
 }
 
 impl Draft {

@@ -11,7 +11,10 @@ use crate::selection::PartSelection;
 use crate::sky::SkyPlan;
 use base::math::Rgb;
 use glam::{DMat4, DVec3, Mat3};
-use scene::{DeltaLight, DistantDisc, Emission, Filter, Material, MaterialId, TextureId, Wrap};
+use scene::{
+    AttributeId, AttributeTexture, DeltaLight, DistantDisc, Emission, Filter, Material, MaterialId,
+    Parameter, TextureId, Wrap,
+};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -36,6 +39,10 @@ pub struct Contents {
     /// Location of each material's description.
     pub material_places: Vec<Location>,
     pub textures: Vec<TexturePlan>,
+    /// Textures that are attributes of meshes.
+    pub attribute_textures: Vec<AttributeTexture>,
+    /// Names of the attributes that textures look up, by number.
+    pub attribute_names: Vec<String>,
     pub lights: Vec<(DeltaLight, DVec3)>,
     pub environment: Option<EnvironmentPlan>,
     pub discs: Vec<DistantDisc>,
@@ -52,7 +59,7 @@ impl Contents {
             MeshSource::Ready(raw) => raw.triangles.len(),
             MeshSource::Shared(raw) => raw.triangles.len(),
             // These are counted when the file is read.
-            MeshSource::Obj(..) | MeshSource::Ply(_) | MeshSource::Serialized(..) => 0,
+            MeshSource::Obj(..) | MeshSource::Ply(_) | MeshSource::Stl(_) | MeshSource::Serialized(..) => 0,
         };
         self.budget.take(triangles, &plan.place)?;
         self.meshes.push(plan);
@@ -77,6 +84,36 @@ impl Contents {
         });
         TextureId(at as u32)
     }
+
+    /// Adds the texture that is the attribute `name` of meshes, times an image if there is one.
+    pub fn add_attribute(&mut self, name: &str, image: Option<TextureId>) -> TextureId {
+        let number = index_of(&mut self.attribute_names, name.to_owned());
+        let texture = AttributeTexture { attribute: AttributeId(number as u32), image };
+        TextureId::of_attribute(index_of(&mut self.attribute_textures, texture))
+    }
+
+    /// Returns true if a texture is an image, or the product of an image and an attribute.
+    pub fn is_image(&self, texture: TextureId) -> bool {
+        let of_attribute = texture.attribute_number().and_then(|number| self.attribute_textures.get(number));
+        of_attribute.is_none_or(|texture| texture.image.is_some())
+    }
+
+    /// Returns a parameter times the attribute `name` of meshes.
+    pub fn times_attribute<T>(&mut self, parameter: Parameter<T>, name: &str) -> Parameter<T> {
+        let (image, scale) = match parameter {
+            Parameter::Constant(value) => (None, value),
+            Parameter::Textured { texture, scale } => (Some(texture), scale),
+        };
+        Parameter::Textured { texture: self.add_attribute(name, image), scale }
+    }
+}
+
+/// Returns the index of `item` in `items`, and adds it if it is not among them.
+fn index_of<T: PartialEq>(items: &mut Vec<T>, item: T) -> usize {
+    items.iter().position(|other| *other == item).unwrap_or_else(|| {
+        items.push(item);
+        items.len() - 1
+    })
 }
 
 /// Plan of a mesh to read or tessellate.
@@ -96,6 +133,7 @@ pub enum MeshSource {
     /// File, and the objects and groups to read.
     Obj(PathBuf, PartSelection),
     Ply(PathBuf),
+    Stl(PathBuf),
     /// File, and index of the mesh in it.
     Serialized(PathBuf, usize),
     Ready(RawMesh),

@@ -5,18 +5,20 @@
 use crate::budget::{TriangleBudget, lacking};
 use crate::decode::{self, Channel, DecodedImage};
 use crate::draft::{Draft, DraftMesh};
-use crate::error::{Location, Log, SceneError};
+use crate::error::{Location, Log, SceneError, Warning};
 use crate::file::{fnv1a, read_file};
+use crate::lacking_uvs;
 use crate::mesh::{self, RawMesh};
 use crate::plan::{
-    Appearance, Contents, EnvironmentPlan, ImageSource, MaterialPlan, MeshPlan, MeshSource, ScenePlan,
-    TexturePlan, TextureSource,
+    Contents, EnvironmentPlan, ImageSource, MeshPlan, MeshSource, ScenePlan, TexturePlan, TextureSource,
 };
+use crate::stand_in::{self, MissingImages};
+use crate::surfaces::finish_mesh;
 use base::math::Rgb;
 use glam::{DMat3, DMat4};
 use rayon::prelude::*;
 use scene::requirements::ENVIRONMENT_TEXEL_BYTES;
-use scene::{Environment, EnvironmentMap, Scene, Texture};
+use scene::{Environment, EnvironmentMap, Scene, Texture, Textures};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
@@ -31,10 +33,16 @@ enum Task<'a> {
 }
 
 enum Done {
-    Meshes(usize, Vec<DraftMesh>),
+    /// Meshes of a plan, and warnings about them.
+    Meshes(usize, Vec<DraftMesh>, Vec<Warning>),
     Texture(usize, DecodedImage),
+    /// A texture that cannot be read.
+    MissingTexture(usize, Warning),
     Environment(DecodedImage),
 }
+
+/// Hash of a file's bytes, if it was read, and its content.
+type UsedFile = (Option<u64>, Vec<Done>);
 
 /// Content of all files of a plan.
 struct ReadFiles {
@@ -44,19 +52,28 @@ struct ReadFiles {
     hashes: Vec<u64>,
     /// Meshes of each mesh plan.
     meshes: Vec<Vec<DraftMesh>>,
+    /// Warnings about each mesh plan.
+    remarks: Vec<Vec<Warning>>,
     /// Image of each texture plan.
     images: Vec<Option<DecodedImage>>,
+    /// Textures that cannot be read.
+    missing: MissingImages,
     environment: Option<DecodedImage>,
 }
 
 impl ScenePlan {
     /// Opens every file; returns the draft, and the hash over the bytes of all files.
     pub fn realise(self, log: &mut Log) -> Result<(Draft, u64), SceneError> {
-        let ReadFiles { sources, hashes, mut meshes, mut images, environment } = self.read_files()?;
-        let contents = self.contents;
+        let read = self.read_files()?;
+        let ReadFiles { sources, hashes, mut meshes, remarks, mut images, mut missing, environment } = read;
+        let mut contents = self.contents;
         contents.place_meshes(&mut meshes, log)?;
-        contents.decode_embedded(&mut images)?;
-        let textures = contents.textures.into_iter().zip(images).filter_map(|(t, p)| texture(t, p)).collect();
+        remarks.into_iter().flatten().try_for_each(|remark| log.add(remark))?;
+        contents.decode_embedded(&mut images, &mut missing)?;
+        stand_in::replace(missing, &mut images, &mut contents.materials, log)?;
+        lacking_uvs::report(&contents, &meshes, &images, log)?;
+        let textures: Textures =
+            contents.textures.into_iter().zip(images).filter_map(|(t, p)| texture(t, p)).collect();
         let environment = match contents.environment {
             Some(plan) => plan.realise(environment)?,
             None => None,
@@ -67,7 +84,7 @@ impl ScenePlan {
             max_depth: self.max_depth,
             hides_emitters: self.hides_emitters,
             materials: contents.materials,
-            textures,
+            textures: textures.with_attributes(contents.attribute_textures),
             environment,
             discs: contents.discs,
             ..Scene::default()
@@ -78,6 +95,7 @@ impl ScenePlan {
             meshes: meshes.into_iter().flatten().collect(),
             lights: contents.lights,
             material_places: contents.material_places,
+            attribute_names: contents.attribute_names,
         };
         let bytes: Vec<u8> = hashes.iter().flat_map(|h| h.to_le_bytes()).collect();
         Ok((draft, fnv1a(&bytes)))
@@ -85,21 +103,25 @@ impl ScenePlan {
 
     fn read_files(&self) -> Result<ReadFiles, SceneError> {
         let files = self.contents.tasks();
-        let outcomes: Vec<Result<(u64, Vec<Done>), SceneError>> =
+        let outcomes: Vec<Result<UsedFile, SceneError>> =
             files.par_iter().map(|(path, tasks)| use_file(path, tasks, &self.contents.budget)).collect();
         let mut read = ReadFiles {
             sources: self.sources.iter().map(|s| s.0.clone()).collect(),
             hashes: self.sources.iter().map(|s| s.1).collect(),
             meshes: vec![Vec::new(); self.contents.meshes.len()],
+            remarks: vec![Vec::new(); self.contents.meshes.len()],
             images: vec![None; self.contents.textures.len()],
+            missing: MissingImages::default(),
             environment: None,
         };
         let mut errors = Vec::new();
         for ((path, _), outcome) in files.iter().zip(outcomes) {
             match outcome {
                 Ok((hash, done)) => {
-                    read.sources.push(path.to_path_buf());
-                    read.hashes.push(hash);
+                    if let Some(hash) = hash {
+                        read.sources.push(path.to_path_buf());
+                        read.hashes.push(hash);
+                    }
                     done.into_iter().for_each(|done| read.take(done));
                 }
                 Err(error) => errors.push(error),
@@ -112,8 +134,9 @@ impl ScenePlan {
 impl ReadFiles {
     fn take(&mut self, done: Done) {
         match done {
-            Done::Meshes(i, meshes) => self.meshes[i] = meshes,
+            Done::Meshes(i, meshes, remarks) => (self.meshes[i], self.remarks[i]) = (meshes, remarks),
             Done::Texture(i, image) => self.images[i] = Some(image),
+            Done::MissingTexture(i, warning) => _ = self.missing.insert(i, warning),
             Done::Environment(image) => self.environment = Some(image),
         }
     }
@@ -152,7 +175,10 @@ impl Contents {
         };
         for (i, mesh) in self.meshes.iter().enumerate() {
             match &mesh.geometry {
-                MeshSource::Obj(path, _) | MeshSource::Ply(path) | MeshSource::Serialized(path, _) => {
+                MeshSource::Obj(path, _)
+                | MeshSource::Ply(path)
+                | MeshSource::Stl(path)
+                | MeshSource::Serialized(path, _) => {
                     add(path, Task::Mesh(i, mesh));
                 }
                 MeshSource::Ready(_) | MeshSource::Shared(_) => {}
@@ -180,9 +206,12 @@ impl Contents {
     fn place_meshes(&self, meshes: &mut [Vec<DraftMesh>], log: &mut Log) -> Result<(), SceneError> {
         for (plan, made) in self.meshes.iter().zip(meshes) {
             match &plan.geometry {
-                MeshSource::Ready(raw) => *made = finish_mesh(plan, raw.clone()),
-                MeshSource::Shared(raw) => *made = finish_mesh(plan, RawMesh::clone(raw)),
-                MeshSource::Obj(path, _) | MeshSource::Ply(path) | MeshSource::Serialized(path, _) => {
+                MeshSource::Ready(raw) => *made = finish_mesh(plan, raw.clone(), &mut Vec::new()),
+                MeshSource::Shared(raw) => *made = finish_mesh(plan, RawMesh::clone(raw), &mut Vec::new()),
+                MeshSource::Obj(path, _)
+                | MeshSource::Ply(path)
+                | MeshSource::Stl(path)
+                | MeshSource::Serialized(path, _) => {
                     if made.iter().all(|mesh| mesh.triangles.is_empty()) {
                         let what = format!("no triangles or polygons are found in {}", path.display());
                         log.warn(&plan.place, what, "the mesh is left out; repair or re-export it")?;
@@ -194,26 +223,54 @@ impl Contents {
     }
 
     /// Decodes the images that are part of a description.
-    fn decode_embedded(&self, images: &mut [Option<DecodedImage>]) -> Result<(), SceneError> {
-        let decode = |(plan, image): (&TexturePlan, &mut Option<DecodedImage>)| {
-            if let TextureSource::Part { source: ImageSource::Bytes(bytes), channel, name } = &plan.image {
-                *image = Some(decode::decode(bytes, *channel, Path::new(name), &plan.place)?);
+    fn decode_embedded(
+        &self,
+        images: &mut [Option<DecodedImage>],
+        missing: &mut MissingImages,
+    ) -> Result<(), SceneError> {
+        let decode = |(i, (plan, image)): (usize, (&TexturePlan, &mut Option<DecodedImage>))| {
+            let TextureSource::Part { source: ImageSource::Bytes(bytes), channel, name } = &plan.image else {
+                return Ok(None);
+            };
+            match decode::decode(bytes, *channel, Path::new(name), &plan.place) {
+                Ok(decoded) => *image = Some(decoded),
+                Err(error) => return stand_in::warning(error, &plan.place).map(|warning| Some((i, warning))),
             }
-            Ok(())
+            Ok(None)
         };
-        self.textures.par_iter().zip(images).try_for_each(decode)
+        let undecoded: Result<Vec<_>, SceneError> =
+            self.textures.par_iter().zip(images).enumerate().map(decode).collect();
+        missing.extend(undecoded?.into_iter().flatten());
+        Ok(())
     }
 }
 
-fn use_file(path: &Path, tasks: &[Task], budget: &TriangleBudget) -> Result<(u64, Vec<Done>), SceneError> {
-    let from = match tasks.first() {
+/// Performs the tasks of a file; returns the hash of its bytes, unless only textures need the file and it cannot be
+/// read.
+fn use_file(path: &Path, tasks: &[Task], budget: &TriangleBudget) -> Result<UsedFile, SceneError> {
+    let is_texture = |task: &Task| matches!(task, Task::Texture(..));
+    // A mesh or an environment that is not there is an error, so its place counts.
+    let from = match tasks.iter().find(|task| !is_texture(task)).or(tasks.first()) {
         Some(Task::Mesh(_, plan)) => &plan.place,
         Some(Task::Texture(_, plan, _)) => &plan.place,
         Some(Task::Environment(place)) => place,
-        None => return Ok((0, Vec::new())),
+        None => return Ok((None, Vec::new())),
     };
-    let bytes = read_file(path, from)?;
-    let hash = fnv1a(&bytes);
+    let bytes = match read_file(path, from) {
+        Ok(bytes) => bytes,
+        Err(error) if tasks.iter().all(is_texture) => {
+            let missing = stand_in::warning(error, from)?;
+            let of_task = |task: &Task| match task {
+                Task::Texture(i, plan, _) => {
+                    Some(Done::MissingTexture(*i, Warning { place: plan.place.clone(), ..missing.clone() }))
+                }
+                Task::Mesh(..) | Task::Environment(_) => None,
+            };
+            return Ok((None, tasks.iter().filter_map(of_task).collect()));
+        }
+        Err(error) => return Err(error),
+    };
+    let hash = Some(fnv1a(&bytes));
     let done: Vec<Result<Done, SceneError>> =
         tasks.par_iter().map(|task| perform(task, &bytes, path, budget)).collect();
     Ok((hash, done.into_iter().collect::<Result<_, _>>()?))
@@ -222,19 +279,25 @@ fn use_file(path: &Path, tasks: &[Task], budget: &TriangleBudget) -> Result<(u64
 fn perform(task: &Task, bytes: &[u8], path: &Path, budget: &TriangleBudget) -> Result<Done, SceneError> {
     Ok(match task {
         Task::Mesh(i, plan) => {
+            let mut remarks = Vec::new();
             let raw = match &plan.geometry {
-                MeshSource::Obj(_, selection) => mesh::obj::read(bytes, path, selection)?,
-                MeshSource::Ply(_) => mesh::ply::read(bytes, path)?,
-                MeshSource::Serialized(_, index) => mesh::serialized::read(bytes, *index, path)?,
+                MeshSource::Obj(_, selection) => mesh::obj::read(bytes, path, selection, &mut remarks)?,
+                MeshSource::Ply(_) => mesh::ply::read(bytes, path, &mut remarks)?,
+                MeshSource::Stl(_) => mesh::stl::read(bytes, path)?,
+                MeshSource::Serialized(_, index) => {
+                    mesh::serialized::read(bytes, *index, path, &mut remarks)?
+                }
                 MeshSource::Ready(raw) => raw.clone(),
                 MeshSource::Shared(raw) => RawMesh::clone(raw),
             };
             budget.take(raw.triangles.len(), &plan.place)?;
-            Done::Meshes(*i, finish_mesh(plan, raw))
+            let meshes = finish_mesh(plan, raw, &mut remarks);
+            Done::Meshes(*i, meshes, remarks)
         }
-        Task::Texture(i, plan, channel) => {
-            Done::Texture(*i, decode::decode(bytes, *channel, path, &plan.place)?)
-        }
+        Task::Texture(i, plan, channel) => match decode::decode(bytes, *channel, path, &plan.place) {
+            Ok(image) => Done::Texture(*i, image),
+            Err(error) => Done::MissingTexture(*i, stand_in::warning(error, &plan.place)?),
+        },
         Task::Environment(place) => {
             let image = decode::decode(bytes, Channel::Colour, path, place)?;
             let DecodedImage { width, height, .. } = image;
@@ -245,30 +308,6 @@ fn perform(task: &Task, bytes: &[u8], path: &Path, budget: &TriangleBudget) -> R
             Done::Environment(image)
         }
     })
-}
-
-fn finish_mesh(plan: &MeshPlan, raw: RawMesh) -> Vec<DraftMesh> {
-    let parts = match &plan.material {
-        MaterialPlan::One(material) => {
-            vec![(plan.name.clone(), Appearance { material: *material, emission: None }, raw)]
-        }
-        MaterialPlan::ByName(appearances, other) => {
-            let parts = mesh::obj::split_by_material(raw).into_iter();
-            let unknown = Appearance { material: *other, emission: None };
-            let appearance = |name: &str| appearances.get(name).copied().unwrap_or(unknown);
-            parts.map(|(name, part)| (format!("{}:{name}", plan.name), appearance(&name), part)).collect()
-        }
-    };
-    let finish = |(name, appearance, raw): (String, Appearance, RawMesh)| {
-        let placed = mesh::place(raw, &plan.placement);
-        DraftMesh {
-            name,
-            material: appearance.material,
-            emission: plan.emission.or(appearance.emission),
-            ..placed
-        }
-    };
-    parts.into_iter().map(finish).collect()
 }
 
 fn texture(plan: TexturePlan, decoded: Option<DecodedImage>) -> Option<Texture> {

@@ -13,6 +13,7 @@ pub(crate) enum Fate {
     /// A warning names the statement and what stands in; an error under `--strict`.
     Named,
     /// An error names the statement.
+    #[allow(dead_code)]
     Refused,
 }
 

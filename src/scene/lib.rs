@@ -6,6 +6,7 @@
 
 #![forbid(unsafe_code)]
 
+mod attribute;
 mod camera;
 mod light;
 mod material;
@@ -16,11 +17,13 @@ mod principled;
 mod projector;
 mod relief;
 pub mod requirements;
+mod statistics;
 pub mod texture;
 
 use glam::DVec3;
 use std::path::PathBuf;
 
+pub use attribute::{Attribute, AttributeId, AttributeValues, interpolated};
 pub use camera::{Camera, Cameras, MAX_FRAMES, MAX_SIDE, Projection};
 pub use light::{DeltaLight, DistantDisc, Environment, EnvironmentMap, SpotImage};
 pub use material::{Blend, Coat, Distribution, Fresnel, Lobe, Material, MaterialId};
@@ -31,7 +34,7 @@ pub use principled::{Principled, eta_of_specular};
 pub use projector::{FovAxis, Projector};
 pub use relief::Relief;
 pub use requirements::Requirements;
-pub use texture::{Filter, Texels, Texture, TextureId, Textures, Wrap};
+pub use texture::{AttributeTexture, Filter, Texels, Texture, TextureId, Textures, Wrap};
 
 /// Maximum ratio of a scene's diagonal to its vicinity, the distance from the camera that contains a tenth of the
 /// corners.

@@ -7,6 +7,7 @@
 use super::parameter::{Reflectance, Roughness, Share};
 use super::principled::Principled;
 use super::relief::Relief;
+use super::texture::TextureId;
 use base::math::Rgb;
 
 /// Index into [`super::Scene::materials`].
@@ -34,6 +35,10 @@ pub struct Material {
     pub opacity: Option<Share>,
     /// Relief, which changes the shading normals.
     pub relief: Option<Relief>,
+    /// Absorption coefficient σ of what is inside solid glass, per channel and per unit of length of the scene.
+    ///
+    /// Light that goes the way d inside keeps the share exp(-σ d).
+    pub absorption: Option<Rgb>,
 }
 
 impl Material {
@@ -73,6 +78,20 @@ impl Material {
         })
     }
 
+    /// Returns the absorption coefficient inside, if the material is of solid glass that absorbs.
+    ///
+    /// In a mixture, the first material that absorbs counts.
+    pub fn interior_absorption(&self) -> Option<Rgb> {
+        let is_solid =
+            |lobe: &Lobe| matches!(lobe, Lobe::Dielectric { thin: false, .. } | Lobe::RoughDielectric { .. });
+        let transmits = |principled: &Principled| principled.spec_trans != Share::Constant(0.0);
+        self.parts().find_map(|part| {
+            let is_glass =
+                part.lobes.iter().any(is_solid) || part.principled.as_deref().is_some_and(transmits);
+            part.absorption.filter(|absorption| is_glass && *absorption != Rgb::ZERO)
+        })
+    }
+
     /// Returns every share.
     pub fn shares_mut(&mut self) -> Vec<&mut Share> {
         let mut all = Vec::from_iter(&mut self.opacity);
@@ -81,6 +100,28 @@ impl Material {
             all.push(&mut blend.weight);
             all.extend(blend.other.shares_mut());
         }
+        all
+    }
+
+    /// Returns every roughness of the lobes.
+    pub fn alphas_mut(&mut self) -> Vec<&mut Roughness> {
+        let mut all = Vec::new();
+        for lobe in &mut self.lobes {
+            if let Lobe::Rough { alpha, .. } | Lobe::RoughDielectric { alpha, .. } = lobe {
+                all.push(alpha);
+            }
+        }
+        all.extend(self.blend.iter_mut().flat_map(|blend| blend.other.alphas_mut()));
+        all
+    }
+
+    /// Lists the textures of colours, shares and roughness.
+    pub fn textures(&self) -> Vec<TextureId> {
+        let mut material = self.clone();
+        let mut all: Vec<TextureId> =
+            material.reflectances_mut().into_iter().filter_map(|colour| colour.texture()).collect();
+        all.extend(material.shares_mut().into_iter().filter_map(|share| share.texture()));
+        all.extend(material.alphas_mut().into_iter().filter_map(|alpha| alpha.texture()));
         all
     }
 

@@ -1,9 +1,10 @@
 //! Indexed triangle meshes.
 
+use super::attribute::{Attribute, AttributeId};
 use super::material::MaterialId;
 use super::texture::TextureId;
 use base::math::Rgb;
-use glam::{Vec2, Vec3};
+use glam::{DVec3, Vec2, Vec3, Vec4};
 
 /// An indexed triangle mesh with one material.
 #[derive(Clone, Debug)]
@@ -19,15 +20,22 @@ pub struct Mesh {
     pub normals: Vec<Vec3>,
     /// Texture coordinates of each vertex, v upwards, or empty for barycentric coordinates.
     pub uvs: Vec<Vec2>,
+    /// Tangent of each vertex, or empty for the direction of growing u.
+    ///
+    /// Normal maps and anisotropy have their x axis along x, y, z; the normal × this axis × the sign of w is their y
+    /// axis. A tangent of zeros stands for the direction of growing u.
+    pub tangents: Vec<Vec4>,
     /// Vertex indices, counter-clockwise seen from the front. All are in range.
     pub triangles: Vec<[u32; 3]>,
     /// Material of every triangle.
     pub material: MaterialId,
     /// Emission, if the surface emits.
     pub emission: Option<Emission>,
+    /// Attributes that material or emission look up.
+    pub attributes: Vec<Attribute>,
 }
 
-/// Diffuse emission of a surface.
+/// Diffuse emission of a surface, to be multiplied by the opacity of its material at each point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Emission {
     /// Radiance from every point of the front, in every direction, W/(sr m²).
@@ -57,6 +65,18 @@ impl Mesh {
         Some(n0 * (1.0 - b.x - b.y) + n1 * b.x + n2 * b.y)
     }
 
+    /// Returns the interpolated tangent, not of unit length; `None` if the mesh has no tangents.
+    ///
+    /// `b` are the barycentric weights of the last two of a triangle's `vertices`.
+    #[inline]
+    pub fn tangent(&self, vertices: &[u32; 3], b: Vec2) -> Option<Vec4> {
+        if self.tangents.is_empty() {
+            return None;
+        }
+        let [t0, t1, t2] = vertices.map(|i| self.tangents[i as usize]);
+        Some(t0 * (1.0 - b.x - b.y) + t1 * b.x + t2 * b.y)
+    }
+
     /// Returns the texture coordinates, or `b` if the mesh has none.
     ///
     /// `b` are the barycentric weights of the last two of a triangle's `vertices`.
@@ -67,5 +87,28 @@ impl Mesh {
         }
         let [u0, u1, u2] = vertices.map(|i| self.uvs[i as usize]);
         u0 * (1.0 - b.x - b.y) + u1 * b.x + u2 * b.y
+    }
+
+    /// Returns the value of an attribute at barycentric weights `b` of the last two corners of triangle `t`; white if
+    /// the mesh lacks the attribute.
+    #[inline]
+    pub fn attribute(&self, id: AttributeId, t: usize, b: Vec2) -> Rgb {
+        let found = self.attributes.iter().find(|attribute| attribute.id == id);
+        found.map_or(Rgb::ONE, |found| found.values.at(t, &self.triangles[t], b))
+    }
+
+    /// Returns the integral of an attribute over the surface, and the surface's area; zeros if the mesh lacks it.
+    pub fn integrate_attribute(&self, id: AttributeId) -> (DVec3, f64) {
+        let Some(found) = self.attributes.iter().find(|attribute| attribute.id == id) else {
+            return (DVec3::ZERO, 0.0);
+        };
+        let of_triangle = |(sum, whole): (DVec3, f64), t: usize| {
+            let [a, b, c] = self.corners(t).map(|corner| corner.as_dvec3());
+            let area = 0.5 * (b - a).cross(c - a).length();
+            let corners = found.values.corners(t, &self.triangles[t]);
+            let mean = corners.into_iter().map(|value| value.as_dvec3()).sum::<DVec3>() / 3.0;
+            (sum + area * mean, whole + area)
+        };
+        (0..self.triangles.len()).fold((DVec3::ZERO, 0.0), of_triangle)
     }
 }

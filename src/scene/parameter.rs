@@ -1,7 +1,7 @@
 //! Parameters of materials: constant, or textured.
 
 use super::texture::TextureId;
-use base::math::Rgb;
+use base::math::{Rgb, luminance};
 use std::ops::Mul;
 
 /// Colour or number that may vary over the surface.
@@ -37,9 +37,25 @@ impl<T: Copy + Mul<Output = T>> Parameter<T> {
         }
     }
 
+    /// Returns the texture; `None` for a constant.
+    pub fn texture(&self) -> Option<TextureId> {
+        match *self {
+            Parameter::Constant(_) => None,
+            Parameter::Textured { texture, .. } => Some(texture),
+        }
+    }
+
     /// True if the parameter is textured.
     pub fn is_textured(&self) -> bool {
         matches!(self, Parameter::Textured { .. })
+    }
+}
+
+impl Share {
+    /// Returns the number, from 0 to 1; `texel` returns the colour of a texture.
+    #[inline]
+    pub fn share(&self, texel: impl FnOnce(TextureId) -> Rgb) -> f32 {
+        self.value(|id| luminance(texel(id))).clamp(0.0, 1.0)
     }
 }
 

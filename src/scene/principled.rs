@@ -9,8 +9,8 @@ use super::parameter::{Parameter, Reflectance, Share};
 /// Diffuse base, specular reflection of a dielectric or a metal, transmission, sheen and clear coat.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Principled {
-    /// Colour of the base. It is the albedo of the diffuse part, the normal reflectance of metal, and the square of the
-    /// transmittance.
+    /// Colour of the base. It is the albedo of the diffuse part, the normal reflectance of metal, and what tints
+    /// transmitted light (see [`Principled::tints_each_passage`]).
     pub base_color: Reflectance,
     /// Fraction of metal; the rest is dielectric.
     pub metallic: Share,
@@ -31,6 +31,9 @@ pub struct Principled {
     pub spec_tint: Share,
     /// Fraction of the dielectric that transmits light as rough solid glass, without a diffuse base.
     pub spec_trans: Share,
+    /// True if each passage through the surface multiplies light by the base's colour, as in glTF. Else it multiplies
+    /// by the root, so that the way in and out has the colour, as in Mitsuba.
+    pub tints_each_passage: bool,
     /// Strength of sheen over the dielectric: light scattered at grazing angles, as by fibres.
     pub sheen: Share,
     /// Fraction of the sheen that has the base's hue; the rest is white.
@@ -65,6 +68,7 @@ impl Default for Principled {
             eta: 1.5,
             spec_tint: none,
             spec_trans: none,
+            tints_each_passage: false,
             sheen: none,
             sheen_tint: none,
             clearcoat: none,

@@ -5,7 +5,6 @@
 use super::material::{Lobe, Material};
 use super::parameter::Reflectance;
 use super::{DeltaLight, Environment, Scene};
-use base::math::luminance;
 use glam::DVec3;
 use serde::Serialize;
 use std::fmt;
@@ -53,7 +52,7 @@ pub struct Trees {
 /// Estimated memory, in bytes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Memory {
-    /// Vertices and indices, Embree's copy included.
+    /// Vertices with their attributes, and indices, Embree's copy included.
     pub geometry: usize,
     /// The hierarchy over the triangles.
     pub hierarchy: usize,
@@ -89,6 +88,8 @@ pub struct Requirements {
     pub trees: Trees,
     /// Number of textures in use.
     pub textures: usize,
+    /// Number of attributes of meshes in use, such as vertex colours.
+    pub attributes: usize,
     /// Number of triangles.
     pub triangles: usize,
     /// Number of triangles that emit.
@@ -117,7 +118,10 @@ impl Requirements {
             r.triangles += mesh.triangles.len();
             r.memory.geometry += 2 * 12 * (mesh.positions.len() + mesh.triangles.len())
                 + 12 * mesh.normals.len()
-                + 8 * mesh.uvs.len();
+                + 8 * mesh.uvs.len()
+                + 16 * mesh.tangents.len()
+                + 12 * mesh.attributes.iter().map(|attribute| attribute.values.all().len()).sum::<usize>();
+            r.attributes += mesh.attributes.len();
             if let Some(emission) = mesh.emission {
                 r.emitting_triangles += mesh.triangles.len();
                 r.lights += 1;
@@ -183,10 +187,9 @@ impl Requirements {
         *kind += 1;
         for lobe in &material.lobes {
             let alpha = match lobe {
-                Lobe::Rough { alpha, .. } | Lobe::RoughDielectric { alpha, .. } => alpha.value(|id| {
-                    let texture = scene.textures.get(id.0 as usize);
-                    texture.and_then(|t| t.texels.iter().map(luminance).reduce(f32::min)).unwrap_or(1.0)
-                }),
+                Lobe::Rough { alpha, .. } | Lobe::RoughDielectric { alpha, .. } => {
+                    alpha.value(|id| scene.luminance_range(id).map_or(1.0, |(low, _)| low))
+                }
                 Lobe::Anisotropic { alpha: [u, v], .. } => u.min(*v),
                 Lobe::Mirror { .. } | Lobe::Dielectric { .. } => continue,
             };
@@ -267,6 +270,9 @@ impl fmt::Display for Requirements {
         writeln!(f, "light trees      {trees}")?;
         writeln!(f, "lights           {} ({} emitting triangles)", self.lights, self.emitting_triangles)?;
         writeln!(f, "textures         {}", self.textures)?;
+        if self.attributes > 0 {
+            writeln!(f, "mesh attributes  {}", self.attributes)?;
+        }
         writeln!(f, "triangles        {}", self.triangles)?;
         writeln!(f, "area, diagonal   {:.6}, {:.6}", self.area, self.diagonal)?;
         let mib = |bytes: usize| bytes as f64 / f64::from(1 << 20);

@@ -7,7 +7,11 @@
 
 #![forbid(unsafe_code)]
 
+mod absorption;
+#[cfg(test)]
+mod attribute_tests;
 mod hidden;
+mod interior;
 pub mod light;
 pub mod material;
 mod meshes;
@@ -27,6 +31,7 @@ pub mod view;
 mod world;
 
 pub use embree::{EmbreeError, Ray};
+pub use interior::Interior;
 pub use meshes::triangle_meshes;
 pub use packet::Surfaces16;
 pub use sheets::beyond;

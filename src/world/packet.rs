@@ -3,9 +3,10 @@
 use super::triangle::position;
 use super::{Surface, World};
 use crate::material::{Bsdf, Bsdfs16, MeanBsdf};
-use base::math::{Cone, F32x16, Frame, LANES, U32x16, Vec2x16, Vec3x16, lanes_in, mask_of};
+use base::math::{Cone, F32x16, Frame, LANES, Rgb, U32x16, Vec2x16, Vec3x16, lanes_in, mask_of};
 use embree::Hits16;
 use glam::Vec2;
+use scene::AttributeId;
 
 /// Surfaces hit by sixteen rays; see [`Surface`] for the fields.
 #[derive(Clone, Debug, Default)]
@@ -127,7 +128,7 @@ impl World {
             let mesh = &self.scene.meshes[s.mesh[i] as usize];
             let uv = || at[i].unwrap_or_else(|| self.coordinates(s, i));
             let covered = || self.covered(s.mesh[i], s.triangle[i], s.footprint.get(i));
-            self.materials.at_coordinates(mesh.material, uv, covered)
+            self.materials.at_coordinates(mesh.material, uv, covered, |id| self.attribute(s, i, id))
         })
     }
 
@@ -153,14 +154,18 @@ impl World {
         let uv = |i: usize| at[i].unwrap_or_else(|| self.coordinates(s, i));
         let covered = |i: usize| self.covered(s.mesh[i], s.triangle[i], s.footprint.get(i));
         if self.materials.averages_texels(id) {
-            let (mut places, mut count) = ([(Vec2::ZERO, 0.0); LANES], 0);
+            let (mut places, mut at, mut count) = ([(Vec2::ZERO, 0.0); LANES], [0; LANES], 0);
             for lane in lanes_in(lanes) {
                 places[count] = (uv(lane), covered(lane));
+                at[count] = lane;
                 count += 1;
             }
-            return (self.materials.mean(id, &places[..count]), lanes);
+            let attribute = |place: usize, id| self.attribute(s, at[place], id);
+            return (self.materials.mean(id, &places[..count], attribute), lanes);
         }
-        let bsdf = |i: usize| self.materials.at_coordinates(id, || uv(i), || covered(i));
+        let attribute = |i, id| self.attribute(s, i, id);
+        let bsdf =
+            |i| self.materials.at_coordinates(id, || uv(i), || covered(i), |found| attribute(i, found));
         let (first_bsdf, mut taken) = (bsdf(first), 1 << first);
         let mut mean = MeanBsdf::new(first_bsdf);
         for lane in lanes_in(lanes & !taken) {
@@ -171,6 +176,12 @@ impl World {
             }
         }
         (mean.mean(), taken)
+    }
+
+    /// Returns the value of an attribute in a lane.
+    fn attribute(&self, s: &Surfaces16, lane: usize, id: AttributeId) -> Rgb {
+        let mesh = &self.scene.meshes[s.mesh[lane] as usize];
+        mesh.attribute(id, s.triangle[lane] as usize, s.barycentric.get(lane))
     }
 
     /// Returns the texture coordinates in a lane.

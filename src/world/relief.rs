@@ -31,7 +31,8 @@ impl Reliefs {
         let of = |mesh: &Mesh| {
             let material = scene.materials.get(mesh.material.0 as usize);
             material.map_or(Turn::default(), |material| {
-                let from_u = material.anisotropy_angle().filter(|_| !mesh.uvs.is_empty());
+                let has_direction = !(mesh.uvs.is_empty() && mesh.tangents.is_empty());
+                let from_u = material.anisotropy_angle().filter(|_| has_direction);
                 Turn { relief: material.relief, from_u }
             })
         };
@@ -51,7 +52,7 @@ impl Reliefs {
             *frame = Frame::from_normal(turned.and_then(Vec3::try_normalize).unwrap_or(normal));
         }
         if let Some(angle) = from_u {
-            let [along_u, along_v] = derivatives(mesh, triangle);
+            let [along_u, along_v] = axes(mesh, triangle, b, frame.normal);
             *frame = Frame::from_normal_and_tangent(frame.normal, along_u);
             if *angle != 0.0 {
                 let (sin, cos) = angle.sin_cos();
@@ -73,11 +74,11 @@ impl Reliefs {
         b: Vec2,
         normal: Vec3,
     ) -> Option<Vec3> {
-        let [along_u, along_v] = derivatives(mesh, triangle);
         let uv = mesh.uv(&triangle.vertices, b);
         let level = |v: Vec3| v - normal * normal.dot(v);
         match *relief {
             Relief::Normals { texture, strength, y_along_v } => self.textures.by_id(texture).map(|texture| {
+                let [along_u, along_v] = axes(mesh, triangle, b, normal);
                 let local = texture.lookup(uv) * 2.0 - 1.0;
                 let x = level(along_u).normalize_or_zero();
                 let y = normal.cross(x);
@@ -85,11 +86,21 @@ impl Reliefs {
                 x * (local.x * strength) + y * (local.y * strength) + normal * local.z
             }),
             Relief::Heights { texture, scale } => self.textures.by_id(texture).map(|texture| {
+                let [along_u, along_v] = derivatives(mesh, triangle);
                 let slope = texture.luminance_gradient(uv) * scale;
                 let turned = (level(along_u) + normal * slope.x).cross(level(along_v) + normal * slope.y);
                 if turned.dot(triangle.normal) < 0.0 { -turned } else { turned }
             }),
         }
+    }
+}
+
+/// Returns the directions of x and y of a texture's frame: those of the mesh's tangents, else the derivatives by u
+/// and v.
+fn axes(mesh: &Mesh, triangle: &Triangle, b: Vec2, normal: Vec3) -> [Vec3; 2] {
+    match mesh.tangent(&triangle.vertices, b).map(|tangent| (tangent.truncate(), tangent.w)) {
+        Some((x, w)) if x != Vec3::ZERO => [x, normal.cross(x) * w],
+        _ => derivatives(mesh, triangle),
     }
 }
 
@@ -112,7 +123,7 @@ mod tests {
     use crate::testkit::*;
     use base::math::Rgb;
     use embree::{Hits16, Ray};
-    use glam::{Vec2, Vec3};
+    use glam::{Vec2, Vec3, Vec4};
     use scene::{
         Camera, Distribution, Filter, Fresnel, Lobe, Material, Principled, Relief, Texture, TextureId, Wrap,
     };
@@ -218,6 +229,43 @@ mod tests {
             let expected = Vec3::new(0.5f32.cos(), mirrored * 0.5f32.sin(), 0.0);
             assert!((frame.tangent - expected).length() < 1e-5, "{frame:?}");
         }
+    }
+
+    #[test]
+    fn tangents_of_a_mesh_come_before_the_directions_of_its_texture() {
+        // The x axis is along y; the y axis is along -x, or along x if the tangents are left-handed.
+        for (w, y) in [(1.0, Vec3::NEG_X), (-1.0, Vec3::X)] {
+            let tangents = vec![Vec4::new(0.0, 1.0, 0.0, w); 4];
+            let local = Vec3::new(0.48, 0.6, 0.64);
+            let relief = Relief::Normals { texture: TextureId(0), strength: 1.0, y_along_v: true };
+            let mut mapped = staged(square(relief, 1, vec![0.5 * local + 0.5]));
+            mapped.meshes[0].tangents = tangents.clone();
+            let expected = Vec3::Y * local.x + y * local.y + Vec3::Z * local.z;
+            let found = normal(&world(mapped), 0.6, 0.5);
+            assert!((found - expected).length() < 1e-5, "{found} {expected}");
+            // Anisotropy turns from x to y, with texture coordinates or without.
+            let mut brushed =
+                staged(square(Relief::Heights { texture: TextureId(0), scale: 0.0 }, 1, vec![Rgb::ZERO]));
+            let lobe = Principled { anisotropic: 0.5, anisotropic_rotation: 0.5, ..Principled::default() };
+            brushed.materials[0].relief = None;
+            brushed.materials[0].principled = Some(Box::new(lobe));
+            brushed.meshes[0].tangents = tangents;
+            brushed.meshes[0].uvs.clear();
+            let world = world(brushed);
+            let frame =
+                world.intersect(&Ray::new(Vec3::new(0.6, 0.5, 1.0), -Vec3::Z)).expect("the square").frame;
+            let expected = Vec3::Y * 0.5f32.cos() + y * 0.5f32.sin();
+            assert!((frame.tangent - expected).length() < 1e-5, "{frame:?}");
+        }
+    }
+
+    #[test]
+    fn tangents_of_zeros_leave_the_directions_of_the_texture() {
+        let local = Vec3::new(0.6, 0.0, 0.8);
+        let relief = Relief::Normals { texture: TextureId(0), strength: 1.0, y_along_v: true };
+        let mut flat = staged(square(relief, 1, vec![0.5 * local + 0.5]));
+        flat.meshes[0].tangents = vec![Vec4::ZERO; 4];
+        assert!((normal(&world(flat), 1.1, 0.4) - local).length() < 1e-5);
     }
 
     #[test]

@@ -115,7 +115,14 @@ impl World {
             let share = self.share_passing(&hit, out, &mut last);
             crossed.add(Crossing { hit, share })
         });
-        if is_free { crossed.transmittance(self, segment) } else { Rgb::ZERO }
+        if !is_free {
+            return Rgb::ZERO;
+        }
+        let passed = crossed.transmittance(self, segment);
+        match self.absorbs() {
+            true => passed * self.share_between(segment, crossed.all().iter().map(|crossing| crossing.hit)),
+            false => passed,
+        }
     }
 
     /// Returns the share of the light towards the unit vector `out` that passes the sheet at a hit.
@@ -128,8 +135,9 @@ impl World {
             false => self.triangles.get(hit.geometry, hit.primitive).shading_normal(mesh, barycentric),
         };
         let uv = || mesh.uv(&self.triangles.get(hit.geometry, hit.primitive).vertices, barycentric);
+        let attribute = |id| mesh.attribute(id, hit.primitive as usize, barycentric);
         let cos = || normal().dot(out);
-        self.materials.straight_transmittance(mesh.material, cos, uv, last)
+        self.materials.straight_transmittance(mesh.material, cos, uv, attribute, last)
     }
 
     /// Returns the parameter at which a segment continues behind the sheet at a hit.

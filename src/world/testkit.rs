@@ -8,8 +8,8 @@ use crate::view::View;
 use base::math::Rgb;
 use glam::{Mat3, Vec2, Vec3};
 use scene::{
-    Camera, Distribution, Emission, Filter, Fresnel, Lobe, Material, MaterialId, Mesh, Parameter,
-    Reflectance, Roughness, Scene, Texels, Texture, TextureId, Wrap,
+    AttributeId, AttributeTexture, Camera, Distribution, Emission, Filter, Fresnel, Lobe, Material,
+    MaterialId, Mesh, Parameter, Reflectance, Roughness, Scene, Texels, Texture, TextureId, Textures, Wrap,
 };
 use std::ops::{Deref, DerefMut};
 
@@ -143,8 +143,21 @@ pub fn texture(width: usize, texels: &[Rgb]) -> Texture {
 /// Adds a texture to a scene.
 pub fn add_texture(scene: &mut Scene, texture: Texture) -> TextureId {
     let textures: Vec<Texture> = scene.textures.iter().cloned().chain([texture]).collect();
-    scene.textures = textures.into();
+    scene.textures = Textures::from(textures).with_attributes(scene.textures.attributes().to_vec());
     TextureId(scene.textures.len() as u32 - 1)
+}
+
+/// Adds a texture to a scene that is an attribute of meshes, times an image if there is one.
+pub fn add_attribute_texture(
+    scene: &mut Scene,
+    attribute: AttributeId,
+    image: Option<TextureId>,
+) -> TextureId {
+    let mut attributes = scene.textures.attributes().to_vec();
+    attributes.push(AttributeTexture { attribute, image });
+    let texture = TextureId::of_attribute(attributes.len() - 1);
+    scene.textures = scene.textures.clone().with_attributes(attributes);
+    texture
 }
 
 /// Adds a material to a scene.
@@ -166,9 +179,11 @@ pub fn quad(corner: Vec3, a: Vec3, b: Vec3, material: MaterialId) -> Mesh {
         positions: vec![corner, corner + a, corner + a + b, corner + b],
         normals: Vec::new(),
         uvs: Vec::new(),
+        tangents: Vec::new(),
         triangles: vec![[0, 1, 2], [0, 2, 3]],
         material,
         emission: None,
+        attributes: Vec::new(),
     }
 }
 

@@ -14,9 +14,11 @@ fn world(normals: Vec<Vec3>) -> World {
         positions,
         normals,
         uvs: Vec::new(),
+        tangents: Vec::new(),
         triangles: vec![[0, 1, 2]],
         material: MaterialId(0),
         emission: None,
+        attributes: Vec::new(),
     };
     let triangle = vec![Vec3::new(0.0, 0.0, 2.0), Vec3::new(0.0, 3.0, 2.0), Vec3::new(4.0, 0.0, 2.0)];
     let tiny = [Vec3::ZERO, Vec3::X, Vec3::Z].map(|v| v * 1e-20);

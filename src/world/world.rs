@@ -1,6 +1,7 @@
 //! A scene prepared for rendering.
 
-use crate::light::{Emitters, emitted};
+use crate::absorption::Absorption;
+use crate::light::Emitters;
 use crate::material::{Bsdf, Materials};
 use crate::meshes::{self, triangle_meshes};
 use crate::relief::Reliefs;
@@ -32,6 +33,7 @@ pub struct World {
     pub(super) reliefs: Option<Reliefs>,
     /// Ray queries over the surfaces that light passes straight through, if there are any.
     pub(super) sheets: Option<Accel>,
+    pub(super) absorption: Absorption,
 }
 
 impl World {
@@ -53,7 +55,19 @@ impl World {
         let triangles = Triangles::new(&scene);
         let sheets = meshes::sheets(&scene, &materials, &accel)?;
         let reliefs = Reliefs::new(&scene);
-        Ok(World { scene, accel, materials, emitters, specular, diagonal, triangles, reliefs, sheets })
+        let absorption = Absorption::new(&scene);
+        Ok(World {
+            scene,
+            accel,
+            materials,
+            emitters,
+            specular,
+            diagonal,
+            triangles,
+            reliefs,
+            sheets,
+            absorption,
+        })
     }
 
     /// Rebuilds the acceleration structure at another quality, for benchmarks.
@@ -113,19 +127,17 @@ impl World {
         let mesh = &self.scene.meshes[s.mesh as usize];
         let uv = || mesh.uv(&self.triangles.get(s.mesh, s.triangle).vertices, s.barycentric);
         let covered = || self.covered(s.mesh, s.triangle, s.footprint);
-        self.materials.at_coordinates(mesh.material, uv, covered)
+        let attribute = |id| mesh.attribute(id, s.triangle as usize, s.barycentric);
+        self.materials.at_coordinates(mesh.material, uv, covered, attribute)
     }
 
-    /// Returns the radiance that a surface emits towards the unit vector `out`.
+    /// Returns the radiance that a surface emits towards the unit vector `out`: as much as the surface is opaque there.
     #[inline]
     pub fn emitted(&self, s: &Surface, out: Vec3) -> Rgb {
-        let mesh = &self.scene.meshes[s.mesh as usize];
-        let Some(emission) = mesh.emission else { return Rgb::ZERO };
-        let factor = |texture| {
-            let uv = mesh.uv(&mesh.triangles[s.triangle as usize], s.barycentric);
-            self.scene.textures.lookup(texture, uv)
-        };
-        emitted(&emission, s.normal, out, factor)
+        match self.emitters.area(s.mesh) {
+            Some(light) => light.emitted(s.triangle, s.barycentric, s.normal, out),
+            None => Rgb::ZERO,
+        }
     }
 
     /// Returns the albedo that guides denoisers, towards the unit vector `out`, from 0 to 1: the larger of the share of

@@ -72,11 +72,15 @@ fn devices_and_pipes_are_refused_at_once() {
     place("texture.toml", "material = [{ name = 'm', kind = 'diffuse', reflectance = 'zero.png' }]");
     place("library.obj", "mtllib zero.mtl\nusemtl m\n");
     place("library.toml", "mesh = [{ file = 'library.obj' }]");
-    let scenes =
-        ["zero.toml", "zero.xml", "zero.glb", "pipe.toml", "mesh.toml", "texture.toml", "library.toml"];
-    for name in scenes {
+    for name in ["zero.toml", "zero.xml", "zero.glb", "pipe.toml", "mesh.toml"] {
         let stderr = sandbox.run(&["info", name]).expect(3).stderr;
         assert!(stderr.contains("not a regular file"), "{name}: {stderr}");
+    }
+    // Grey stands in for a texture and for the materials of a library.
+    for (name, refusal) in [("texture.toml", "not a regular file"), ("library.toml", "no material library")] {
+        sandbox.run(&["info", name]).expect(0);
+        let stderr = sandbox.run(&["info", "--strict", name]).expect(3).stderr;
+        assert!(stderr.contains(refusal), "{name}: {stderr}");
     }
     std::fs::rename(sandbox.path("pipe.toml"), sandbox.path("pipe.exr")).unwrap();
     let compared = sandbox.run(&["compare", "pipe.exr", "pipe.exr"]).expect(3);
@@ -102,7 +106,7 @@ fn wrong_command_lines_end_with_2_and_say_what_is_wrong() {
     let render = |more: &[&str]| sandbox.render("a.exr", more).expect(2).stderr;
     assert!(!sandbox.run(&[]).expect(2).stderr.is_empty());
     sandbox.run(&["paint"]).expect(2);
-    sandbox.run(&["render", "room.xml"]).expect(2);
+    sandbox.run(&["render"]).expect(2);
     render(&["--method", "guess"]);
     render(&["--threads", "0"]);
     render(&["--max-depth", "0"]);

@@ -92,6 +92,36 @@ fn frames_are_whole_pictures_of_one_exposure_each_by_its_own_camera() {
 }
 
 #[test]
+fn single_frames_stand_in_the_place_for_the_number_with_all_their_files() {
+    let sandbox = sandbox();
+    let render = |more: &[&str]| {
+        let base =
+            ["render", "path.toml", "-o", "f/s.###.exr", "--method", "path", "--spp", "1", "--no-denoise"];
+        sandbox.run(&[&base, more].concat())
+    };
+    render(&["--frame", "6"]).expect(0);
+    assert_eq!(frames(&sandbox), ["s.006.exr", "s.006.png"]);
+    let again = render(&["--frame", "6", "--resume"]).expect(0).stderr;
+    assert!(again.contains("s.006.exr exists already"), "{again}");
+    render(&["--frame", "2", "--png", "f/shown.%02d.png"]).expect(0);
+    assert_eq!(frames(&sandbox), ["s.002.exr", "s.006.exr", "s.006.png", "shown.02.png"]);
+    // A walk renders the same files, and a name with a place needs a number.
+    sandbox
+        .run(&["walk", "path.toml", "-o", "f/s.###.exr", "--frames", "6", "--spp", "1", "--vpls", "99"])
+        .expect(0);
+    assert_eq!(frames(&sandbox).len(), 4);
+    let refused = render(&[]).expect(2).stderr;
+    assert!(refused.contains("--frame N"), "{refused}");
+    let job =
+        "[[picture]]\nscene = 'path.toml'\noutput = 'f/b.##.exr'\nframe = 1\nmethod = 'path'\nspp = 1\n";
+    fs::write(sandbox.path("job.toml"), [job, &job.replace("frame = 1", "frame = 3")].concat()).unwrap();
+    sandbox.run(&["batch", "job.toml"]).expect(0);
+    assert_eq!(frames(&sandbox)[..4], ["b.01.exr", "b.01.png", "b.03.exr", "b.03.png"]);
+    fs::write(sandbox.path("job.toml"), job.repeat(2)).unwrap();
+    assert!(sandbox.run(&["batch", "job.toml"]).expect(2).stderr.contains("same file"));
+}
+
+#[test]
 fn stages_are_told_once_a_frame_and_the_fraction_ends_at_one() {
     let sandbox = sandbox();
     let stderr = walk(&sandbox, "1-3", &["--progress", "ndjson"]).expect(0).stderr;
@@ -166,7 +196,7 @@ fn wrong_names_ranges_and_scenes_are_errors_and_nothing_is_written() {
     assert!(error("1", &["--time", "3s"], 2).contains("--time"));
     let named = |name: &str| sandbox.run(&["walk", "path.toml", "-o", name, "--frames", "1"]);
     assert!(named("f/a.exr").expect(2).stderr.contains("####"));
-    assert!(named("none/a.#.exr").expect(4).stderr.contains("does not exist"));
+    assert!(named("none/none/a.#.exr").expect(4).stderr.contains("does not exist"));
     let pathless = sandbox.run(&["walk", "room.xml", "-o", "f/a.#.exr"]).expect(2).stderr;
     assert!(pathless.contains("no camera path") && pathless.contains("[camera.path]"), "{pathless}");
     assert_eq!(frames(&sandbox), [""; 0]);

@@ -5,11 +5,11 @@
 
 use crate::kit::*;
 use crate::oracle::{assert_means_within, mean};
-use glam::{DVec3, Mat3, Vec3};
+use glam::{DVec3, Mat3, Vec2, Vec3};
 use lightsplat::math::Rgb;
 use lightsplat::scene::{
-    DeltaLight, DistantDisc, Environment, FovAxis, Material, Principled, Projector, Reflectance, Scene,
-    SpotImage,
+    Attribute, AttributeId, AttributeValues, DeltaLight, DistantDisc, Emission, Environment, Filter, FovAxis,
+    Material, MaterialId, Mesh, Principled, Projector, Reflectance, Scene, Share, SpotImage, Texture, Wrap,
 };
 use std::f32::consts::PI;
 
@@ -23,7 +23,7 @@ const TOLERANCE: f64 = 0.03;
 type NamedScene = (&'static str, fn() -> WorldAndView);
 
 /// Scenes of mean 1, each with the reason.
-const SCENES: [NamedScene; 13] = [
+const SCENES: [NamedScene; 21] = [
     ("nothing before a sky of radiance 1", || {
         let mut scene = scene(camera(Vec3::ZERO, Vec3::X, 0.5), [8, 8]);
         scene.environment = Some(Environment::Constant(Rgb::ONE));
@@ -60,6 +60,20 @@ const SCENES: [NamedScene; 13] = [
         floor(|scene| {
             let intensity = Rgb::splat(IRRADIANCE * dist_sq / cos);
             scene.lights.push(DeltaLight::Point { position, intensity });
+        })
+    }),
+    ("a floor under a point light in a block of glass that absorbs: I cos / d² exp(-σ l)", || {
+        let (position, cos, dist_sq) = (Vec3::new(0.0, 2.0, 1.5), 2.0 / 2.5, 6.25);
+        let (absorption, inside) = (Rgb::new(0.5, 1.0, 2.0), 0.5 / cos);
+        floor(|scene| {
+            let intensity = (absorption * inside).exp() * (IRRADIANCE * dist_sq / cos);
+            scene.lights.push(DeltaLight::Point { position, intensity });
+            let material = Material { absorption: Some(absorption), ..glass(1.0) };
+            let material = add_material(scene, material);
+            for mut side in room(position - 0.5, position + 0.5, material) {
+                side.triangles.iter_mut().for_each(|corners| corners.swap(1, 2));
+                scene.meshes.push(side);
+            }
         })
     }),
     ("a floor under a spot light, within its inner cone", || {
@@ -114,16 +128,106 @@ const SCENES: [NamedScene; 13] = [
     }),
     // Howell, A Catalog of Radiation Heat Transfer Configuration Factors, C-11, applied to four corners.
     ("a floor under a parallel square of half-width h at height d", || {
+        floor(|scene| {
+            let black = add_material(scene, diffuse(Rgb::ZERO));
+            square_lamp(scene, black, 1.0);
+        })
+    }),
+    ("a floor under that square, of which a quarter is there everywhere", || {
+        floor(|scene| {
+            let veil = add_material(scene, Material { opacity: Some(0.25.into()), ..diffuse(Rgb::ZERO) });
+            square_lamp(scene, veil, 0.25);
+        })
+    }),
+    ("a floor under that square, half of which is cut out", || {
+        floor(|scene| {
+            let opacity = Some(ramp(scene, Filter::Cut(0.5)));
+            let half = add_material(scene, Material { opacity, ..diffuse(Rgb::ZERO) });
+            square_lamp(scene, half, 0.5);
+        })
+    }),
+    ("a veil in the closed room that emits what it absorbs, as far as it is there: not seen", || {
+        furnace(|scene| leaves(scene, Filter::Bilinear))
+    }),
+    ("leaves cut out of it: not seen either", || furnace(|scene| leaves(scene, Filter::Cut(0.4)))),
+    ("a floor of vertex colours under a sky of radiance 1 / their value at the point seen", || {
+        let colour = |x: f32, z: f32| Rgb::new(0.5 + 0.4 * x, 0.5 - 0.4 * x, 0.5 + 0.4 * z);
+        let at = Vec3::new(0.6, 0.0, -0.5);
+        let mut scene = scene(camera(at + Vec3::Y, at, 0.05), [8, 8]);
+        let texture = add_attribute_texture(&mut scene, AttributeId(0), None);
+        let diffuse = Reflectance::Textured { texture, scale: Rgb::ONE };
+        let material = add_material(&mut scene, Material { diffuse, ..Material::default() });
+        let floor = quad(Vec3::new(-1.0, 0.0, -1.0), Vec3::Z * 2.0, Vec3::X * 2.0, material);
+        let colours = floor.positions.iter().map(|p| colour(p.x, p.z)).collect();
+        scene.meshes.push(with_attribute(floor, AttributeValues::Vertices(colours)));
+        scene.environment = Some(Environment::Constant(colour(at.x, at.z).recip()));
+        world(scene)
+    }),
+    // Both triangles of the lamp have the same form factor.
+    ("a floor under a parallel square whose triangles emit unequally", || {
         let (h, d) = (0.5f32, 2.0f32);
         let a = h / d;
         let corner_factor = a / (1.0 + a * a).sqrt() * (a / (1.0 + a * a).sqrt()).atan() / PI;
         floor(|scene| {
+            let texture = Some(add_attribute_texture(scene, AttributeId(0), None));
             let black = add_material(scene, diffuse(Rgb::ZERO));
             let lamp = quad(Vec3::new(-h, d, -h), Vec3::X * 2.0 * h, Vec3::Z * 2.0 * h, black);
-            scene.meshes.push(emitting(lamp, Rgb::splat(IRRADIANCE / (PI * 4.0 * corner_factor))));
+            let radiance = Rgb::splat(IRRADIANCE / (PI * 4.0 * corner_factor));
+            let shares = vec![Rgb::new(0.2, 1.0, 2.0), Rgb::new(1.8, 1.0, 0.0)];
+            let mut lamp = with_attribute(lamp, AttributeValues::Triangles(shares));
+            lamp.emission = Some(Emission { radiance, texture, two_sided: false });
+            scene.meshes.push(lamp);
+        })
+    }),
+    ("a floor in the shadow of a screen whose vertices are opaque in part", || {
+        let direction = -Vec3::new(0.0, 2.0, 1.5).normalize();
+        floor(|scene| {
+            let texture = add_attribute_texture(scene, AttributeId(0), None);
+            let opacity = Some(Share::Textured { texture, scale: 0.5 });
+            let screen = add_material(scene, Material { opacity, ..diffuse(Rgb::ZERO) });
+            let screen = quad(Vec3::new(-0.2, 1.0, 0.55), Vec3::X * 0.4, Vec3::Z * 0.4, screen);
+            // The ray to the point passes the middle of the diagonal between the first and the third corner.
+            let opacities = [0.6, 0.0, 1.0, 0.0].map(Rgb::splat).to_vec();
+            scene.meshes.push(with_attribute(screen, AttributeValues::Vertices(opacities)));
+            let irradiance = Rgb::splat(IRRADIANCE / 0.8 / (1.0 - 0.5 * 0.8));
+            scene.lights.push(DeltaLight::Directional { direction, irradiance });
         })
     }),
 ];
+
+/// Adds the parallel square over the floor. Its material covers the share `opacity` of it on average.
+fn square_lamp(scene: &mut Scene, material: MaterialId, opacity: f32) {
+    let (h, d) = (0.5f32, 2.0f32);
+    let a = h / d;
+    let corner_factor = a / (1.0 + a * a).sqrt() * (a / (1.0 + a * a).sqrt()).atan() / PI;
+    let lamp = quad(Vec3::new(-h, d, -h), Vec3::X * 2.0 * h, Vec3::Z * 2.0 * h, material);
+    let radiance = IRRADIANCE / (PI * 4.0 * corner_factor) / opacity;
+    scene.meshes.push(emitting(textured(lamp, Vec2::ONE), Rgb::splat(radiance)));
+}
+
+/// Adds a texture that is black on the left and white on the right, with a ramp between them.
+fn ramp(scene: &mut Scene, filter: Filter) -> Share {
+    let texels = [Rgb::ZERO, Rgb::ONE];
+    let ramp = Texture { filter, wrap: Wrap::Clamp, ..texture(2, &texels) };
+    Share::Textured { texture: add_texture(scene, ramp), scale: 1.0 }
+}
+
+/// Adds two sheets, one behind the other, whose opacity is a ramp. Where they are there, they emit what they absorb.
+fn leaves(scene: &mut Scene, filter: Filter) {
+    let opacity = Some(ramp(scene, filter));
+    let leaf = add_material(scene, Material { opacity, ..diffuse(Rgb::splat(ALBEDO)) });
+    for z in [-0.4, 0.0] {
+        let mut mesh = textured(quad(Vec3::new(-0.5, -0.6, z), Vec3::X, Vec3::Y, leaf), Vec2::splat(2.5));
+        mesh.emission = Some(Emission { radiance: Rgb::splat(1.0 - ALBEDO), texture: None, two_sided: true });
+        scene.meshes.push(mesh);
+    }
+}
+
+/// Gives a mesh an attribute.
+fn with_attribute(mut mesh: Mesh, values: AttributeValues) -> Mesh {
+    mesh.attributes.push(Attribute { id: AttributeId(0), values });
+    mesh
+}
 
 /// Irradiance of a floor whose radiance is 1.
 const IRRADIANCE: f32 = PI / ALBEDO;

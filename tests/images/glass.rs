@@ -8,7 +8,7 @@ use lightsplat::method::{Renderer, cache, lightcuts, path, photon_cache, reconst
 use lightsplat::scene::{DeltaLight, Distribution, Environment, Lobe, Material, MaterialId, Mesh, Parameter};
 
 /// A room seen from inside, dark but for what comes through a hole in its wall towards +x, from a lamp in another room.
-fn two_rooms(add: impl FnOnce(&mut SceneAndView)) -> WorldAndView {
+pub(crate) fn two_rooms(add: impl FnOnce(&mut SceneAndView)) -> WorldAndView {
     let mut scene = scene(camera(Vec3::new(0.5, 0.1, 0.9), Vec3::new(-0.4, -0.3, -0.6), 0.9), [16, 16]);
     let wall = add_material(&mut scene, diffuse(Rgb::new(0.7, 0.6, 0.5)));
     let is_between = |mesh: &Mesh, x: f32| mesh.positions.iter().all(|p| p.x == x);
@@ -40,7 +40,7 @@ fn sheet(scene: &mut SceneAndView, x: f32, material: Material) {
 }
 
 /// A closed room with a ball and a small lamp.
-fn lamp_room(add: impl Fn(&mut SceneAndView)) -> WorldAndView {
+pub(crate) fn lamp_room(add: impl Fn(&mut SceneAndView)) -> WorldAndView {
     let mut scene = scene(room_camera(), [16, 16]);
     let wall = add_material(&mut scene, diffuse(Rgb::new(0.6, 0.5, 0.4)));
     scene.meshes.extend(room(Vec3::splat(-1.0), Vec3::ONE, wall));
@@ -50,7 +50,7 @@ fn lamp_room(add: impl Fn(&mut SceneAndView)) -> WorldAndView {
 }
 
 /// A lamp in a shell of glass.
-fn bulb(scene: &mut SceneAndView) {
+pub(crate) fn bulb(scene: &mut SceneAndView) {
     let (material, black) = (add_material(scene, glass(1.5)), add_material(scene, diffuse(Rgb::ZERO)));
     let centre = Vec3::new(0.3, 0.3, -0.2);
     let mut inside = sphere(centre, 0.27, 24, material);
@@ -98,7 +98,7 @@ pub(crate) fn by_default(world: &WorldAndView) -> DVec3 {
 }
 
 /// A solid pane in the hole.
-fn solid_pane(scene: &mut SceneAndView) {
+pub(crate) fn solid_pane(scene: &mut SceneAndView) {
     let material = add_material(scene, glass(1.5));
     for mut side in room(Vec3::new(1.05, -0.35, -0.65), Vec3::new(1.1, 0.75, 0.55), material) {
         side.triangles.iter_mut().for_each(|corners| corners.swap(1, 2));
@@ -107,7 +107,7 @@ fn solid_pane(scene: &mut SceneAndView) {
 }
 
 /// A frosted one.
-fn frosted_pane(scene: &mut SceneAndView) {
+pub(crate) fn frosted_pane(scene: &mut SceneAndView) {
     solid_pane(scene);
     let white = Parameter::Constant(Rgb::ONE);
     let lobe = Lobe::RoughDielectric {
@@ -276,7 +276,7 @@ fn glass_ware_under_a_lamp_and_the_sky_agrees_with_paths() {
 }
 
 /// Asserts that methods which gather light by cuts or photons agree with paths.
-fn assert_methods_agree(world: &WorldAndView, spp: u32, what: &str) {
+pub(crate) fn assert_methods_agree(world: &WorldAndView, spp: u32, what: &str) {
     /// Relative difference of means that the noise of few paths through glass explains.
     const NOISE: f64 = 0.05;
     let exact = by_paths(world);

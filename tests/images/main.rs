@@ -12,6 +12,7 @@ mod kit;
 mod oracle;
 mod presets;
 
+mod absorption;
 mod all_methods;
 mod cache;
 mod cache_artefacts;
@@ -25,7 +26,10 @@ mod glossy;
 mod lightcuts;
 mod many_lights;
 mod mitsuba;
+mod models;
+mod obj_materials;
 mod occluder_cache;
+mod opacity;
 mod path;
 mod photon_cache;
 mod principled;

@@ -1,5 +1,6 @@
 //! Errors of image files.
 
+use crate::exr_file::NoPicture;
 use std::io;
 use std::path::PathBuf;
 use thiserror::Error;
@@ -22,6 +23,14 @@ pub enum ImageError {
         path: PathBuf,
         /// Description of the error.
         reason: String,
+    },
+    /// No channels are clearly the picture.
+    #[error("{}: {none}", path.display())]
+    NoPicture {
+        /// The file.
+        path: PathBuf,
+        /// Channels of the file, and the remedy.
+        none: NoPicture,
     },
     /// The image has no colour of the requested name.
     #[error("{} has no {wanted}; its channels are: {}", path.display(), channels.join(", "))]

@@ -3,12 +3,15 @@
 use super::exr_read::text;
 use super::exr_write::{name_of, set, write};
 use super::{ExrFile, Fact, Image, ImageError};
+use crate::exr_file::ColourModel;
 use crate::math::luminance;
 use ::exr::prelude::{AnyChannel, AnyChannels, FlatSamples, Text, WritableImage};
 use std::path::Path;
 
 impl ExrFile {
     /// Replaces [`ExrFile::color`] by an image of the same size. The old colour becomes the layer `kept`, if named.
+    ///
+    /// Luminance and chroma become red, green and blue.
     ///
     /// # Errors
     /// If the file has no colour, or the sizes differ.
@@ -21,14 +24,19 @@ impl ExrFile {
         let place = self.color_place()?;
         let channels = &mut self.parts.layer_data[place.part].channel_data;
         let mut list = std::mem::take(&mut channels.list);
-        let is_grey = place.channels[0] == place.channels[1];
+        let is_grey = place.model == ColourModel::Luma;
         for (k, index) in place.channels.into_iter().enumerate().take(if is_grey { 1 } else { 3 }) {
             let samples = image.pixels.iter().map(|p| if is_grey { luminance(*p) } else { p[k] }).collect();
-            let new = AnyChannel::new(list[index].name.clone(), FlatSamples::F32(samples));
+            let own = text(&list[index].name);
+            let (layer, component) = own.rsplit_once('.').unwrap_or(("", &own));
+            let name = match place.model {
+                ColourModel::LumaChroma => name_in(layer, ["R", "G", "B"][k]),
+                ColourModel::Rgb | ColourModel::Luma => list[index].name.clone(),
+            };
+            let new = AnyChannel::new(name, FlatSamples::F32(samples));
             let mut old = std::mem::replace(&mut list[index], new);
             if let Some(layer) = kept {
-                let name = text(&old.name);
-                old.name = name_in(layer, name.rsplit('.').next().unwrap_or(&name));
+                old.name = name_in(layer, component);
                 list.push(old);
             }
         }
@@ -102,7 +110,8 @@ impl ExrFile {
     }
 }
 
-/// Returns the name of a layer's channel.
+/// Returns the name of a layer's channel. The image itself has the name "".
 fn name_in(layer: &str, channel: &str) -> Text {
-    Text::from_slice_unchecked(format!("{layer}.{channel}").as_bytes())
+    let dot = if layer.is_empty() { "" } else { "." };
+    Text::from_slice_unchecked(format!("{layer}{dot}{channel}").as_bytes())
 }

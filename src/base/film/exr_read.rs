@@ -2,39 +2,40 @@
 
 use super::exr_write::PREFIX;
 use super::{CameraMatrices, Fact, Image, ImageError, Metadata};
+use crate::exr_file::{
+    ColourModel, ExrError, ExrSource, NoPicture, PartNames, PictureChannels, Primaries, from_luma_chroma,
+    picture_channels,
+};
 use crate::film::Window;
 use crate::math::Rgb;
+use ::exr::meta::BlockDescription;
 use ::exr::meta::header::Header;
 use ::exr::prelude::{
-    AttributeValue, Error, FlatImage, FlatSamples, Layer, ReadChannels, ReadLayers, Text, Vec2, read,
+    AnyChannel, AnyChannels, AttributeValue, Blocks, Encoding, FlatImage, FlatSamples, Layer, Text, Vec2,
 };
 use std::fs::{self, File};
 use std::io::{self, BufReader};
 use std::path::{Path, PathBuf};
 
-/// Names of the colour channels of an image, by preference.
-const COLOR: [[&str; 3]; 2] = [["R", "G", "B"], ["Y"; 3]];
-/// Names of the colour channels of a layer, by preference.
-const LAYER: [[&str; 3]; 3] = [["R", "G", "B"], ["X", "Y", "Z"], ["Y"; 3]];
+/// Names of the colour channels of a layer, by preference, and their meaning.
+const LAYER: [([&str; 3], ColourModel); 4] = [
+    (["R", "G", "B"], ColourModel::Rgb),
+    (["X", "Y", "Z"], ColourModel::Rgb),
+    (["Y", "RY", "BY"], ColourModel::LumaChroma),
+    (["Y"; 3], ColourModel::Luma),
+];
 
 /// An OpenEXR file in memory.
 #[derive(Clone, Debug)]
 pub struct ExrFile {
     pub(super) path: PathBuf,
     pub(super) parts: FlatImage,
-}
-
-/// Indices of three channels in a file. The channels may be equal.
-#[derive(Clone, Copy)]
-pub(super) struct ChannelPlace {
-    /// Index of the part.
-    pub part: usize,
-    /// Indices of the channels in the part.
-    pub channels: [usize; 3],
+    /// Names of the parts that are left out, since their data are deep.
+    deep: Vec<String>,
 }
 
 impl ExrFile {
-    /// Reads all channels of the file at `path`.
+    /// Reads all channels of the flat parts of the file at `path`. Subsampled channels are interpolated to full size.
     ///
     /// # Errors
     /// If the file cannot be read, or is no supported OpenEXR image.
@@ -45,26 +46,27 @@ impl ExrFile {
             return Err(fail(io::Error::other("it is not a regular file")));
         }
         let file = File::open(path).map_err(fail)?;
-        let decode = |error: Error| match error {
-            Error::Io(error) => fail(error),
-            other => ImageError::Decode { path: path.to_owned(), reason: other.to_string() },
+        let decode = |error: ExrError| match error {
+            ExrError::Io(error) => fail(error),
+            ExrError::Content(reason) => ImageError::Decode { path: path.to_owned(), reason },
         };
-        let chunks = ::exr::block::read(BufReader::new(file), false).map_err(decode)?;
-        check_memory(chunks.headers())
-            .map_err(|reason| ImageError::Decode { path: path.to_owned(), reason })?;
-        let parts = read()
-            .no_deep_data()
-            .largest_resolution_level()
-            .all_channels()
-            .all_layers()
-            .all_attributes()
-            .from_chunks(chunks)
-            .map_err(decode)?;
-        Ok(ExrFile { path: path.to_owned(), parts })
+        let mut source = ExrSource::open(BufReader::new(file)).map_err(decode)?;
+        check_memory(source.headers()).map_err(|reason| decode(ExrError::Content(reason)))?;
+        let names = source.names();
+        let (mut parts, mut deep) = (Vec::new(), Vec::new());
+        for (index, names) in names.into_iter().enumerate() {
+            if names.is_deep {
+                deep.push(names.name);
+            } else {
+                parts.push(part(&mut source, index).map_err(decode)?);
+            }
+        }
+        let attributes = source.headers()[0].shared_attributes.clone();
+        let parts = FlatImage { attributes, layer_data: parts.into() };
+        Ok(ExrFile { path: path.to_owned(), parts, deep })
     }
 
-    /// Returns the colour of the image: `R`, `G`, `B`, else the luminance `Y` as grey, else the colour of the only
-    /// layer with one, or of Blender's `Combined`.
+    /// Returns the colour of the image, by the rule of [`picture_channels`], in the primaries of the file.
     ///
     /// # Errors
     /// If there is no colour.
@@ -73,14 +75,51 @@ impl ExrFile {
     }
 
     /// Returns the channels of [`ExrFile::color`].
-    pub(super) fn color_place(&self) -> Result<ChannelPlace, ImageError> {
-        let layer = || {
-            let layers = self.layers();
-            let combined = |layer: &&String| layer.rsplit('.').next() == Some("Combined");
-            let only = layers.first().filter(|_| layers.len() == 1);
-            self.find(only.or_else(|| layers.iter().find(combined))?, &LAYER)
+    pub(super) fn color_place(&self) -> Result<PictureChannels, ImageError> {
+        let names = |part: &Layer<AnyChannels<_>>| PartNames {
+            name: part_name(part),
+            channels: part.channel_data.list.iter().map(|channel| text(&channel.name)).collect(),
+            is_deep: false,
         };
-        self.find("", &COLOR).or_else(layer).ok_or_else(|| self.missing("colour (R, G, B or Y)".to_owned()))
+        let parts: Vec<PartNames> = self.parts.layer_data.iter().map(names).collect();
+        picture_channels(&parts).map_err(|none| ImageError::NoPicture {
+            path: self.path.clone(),
+            none: NoPicture { has_deep: !self.deep.is_empty(), ..none },
+        })
+    }
+
+    /// Converts colours of the file to linear Rec. 709.
+    ///
+    /// # Errors
+    /// If the primaries of the file span no colours.
+    pub fn to_rec_709(&self, mut image: Image) -> Result<Image, ImageError> {
+        let primaries = self.primaries()?;
+        if primaries.to_rec_709.is_some() {
+            image.pixels.iter_mut().for_each(|pixel| *pixel = primaries.rec_709(*pixel));
+        }
+        Ok(image)
+    }
+
+    fn primaries(&self) -> Result<Primaries, ImageError> {
+        let reason = || "the primaries of its attribute chromaticities span no colours".to_owned();
+        Primaries::new(self.parts.attributes.chromaticities)
+            .ok_or_else(|| ImageError::Decode { path: self.path.clone(), reason: reason() })
+    }
+
+    /// Checks that no part of the file is left out, so that an edited file loses nothing.
+    ///
+    /// # Errors
+    /// If the file has deep parts.
+    pub fn check_whole(&self) -> Result<(), ImageError> {
+        match self.deep.first() {
+            Some(name) => Err(ImageError::Decode {
+                path: self.path.clone(),
+                reason: format!(
+                    "its part `{name}` holds deep data, which would be lost; take it out of the file"
+                ),
+            }),
+            None => Ok(()),
+        }
     }
 
     /// Returns the values of layer `name`: the channels `name.R`, `name.G`, `name.B`, or X, Y, Z, or a part of that
@@ -184,7 +223,7 @@ impl ExrFile {
 
     /// Returns the channels of `layer`: the first three of `names` that all exist, or the single channel called
     /// `layer`.
-    fn find(&self, layer: &str, names: &[[&str; 3]]) -> Option<ChannelPlace> {
+    fn find(&self, layer: &str, names: &[([&str; 3], ColourModel)]) -> Option<PictureChannels> {
         let prefix = if layer.is_empty() { String::new() } else { format!("{layer}.") };
         self.parts.layer_data.iter().enumerate().find_map(|(index, part)| {
             let own = part_name(part);
@@ -194,31 +233,35 @@ impl ExrFile {
                     name == wanted || (!own.is_empty() && format!("{own}.{name}") == wanted)
                 })
             };
-            let three =
-                names.iter().find_map(|names| match names.map(|name| channel(&format!("{prefix}{name}"))) {
-                    [Some(a), Some(b), Some(c)] => Some([a, b, c]),
+            let three = names.iter().find_map(|(names, model)| {
+                match names.map(|name| channel(&format!("{prefix}{name}"))) {
+                    [Some(a), Some(b), Some(c)] => Some(([a, b, c], *model)),
                     _ => None,
-                });
-            let channels = three.or_else(|| channel(layer).map(|scalar| [scalar; 3]))?;
-            Some(ChannelPlace { part: index, channels })
+                }
+            });
+            let scalar = || channel(layer).map(|scalar| ([scalar; 3], ColourModel::Luma));
+            let (channels, model) = three.or_else(scalar)?;
+            Some(PictureChannels { part: index, channels, model })
         })
     }
 
-    fn join(&self, place: ChannelPlace) -> Result<Image, ImageError> {
-        let decode = |reason: String| ImageError::Decode { path: self.path.clone(), reason };
+    fn join(&self, place: PictureChannels) -> Result<Image, ImageError> {
         let part = &self.parts.layer_data[place.part];
         let channels = place.channels.map(|index| &part.channel_data.list[index]);
         let [width, height] = [part.size.0, part.size.1];
-        for channel in channels {
-            if channel.sampling != Vec2(1, 1) || channel.sample_data.len() != width * height {
-                return Err(decode(format!("channel {} is subsampled", text(&channel.name))));
-            }
-        }
         let (Ok(columns), Ok(rows)) = (u32::try_from(width), u32::try_from(height)) else {
-            return Err(decode(format!("{width}x{height} pixels are too many")));
+            let reason = format!("{width}x{height} pixels are too many");
+            return Err(ImageError::Decode { path: self.path.clone(), reason });
         };
         let [r, g, b] = channels.map(|channel| channel.sample_data.values_as_f32());
-        let pixels = r.zip(g).zip(b).map(|((r, g), b)| Rgb::new(r, g, b)).collect();
+        let triples = r.zip(g).zip(b).map(|((r, g), b)| [r, g, b]);
+        let pixels = match place.model {
+            ColourModel::LumaChroma => {
+                let weights = self.primaries()?.weights;
+                triples.map(|triple| from_luma_chroma(triple, weights)).collect()
+            }
+            ColourModel::Rgb | ColourModel::Luma => triples.map(Rgb::from).collect(),
+        };
         Ok(Image { width: columns, height: rows, pixels })
     }
 
@@ -240,7 +283,7 @@ pub fn read_exr(path: &Path) -> Result<Image, ImageError> {
 /// The OpenEXR library would abort the process on a damaged header with a size of terabytes.
 fn check_memory(headers: &[Header]) -> Result<(), String> {
     let mut bytes = 0usize;
-    for header in headers {
+    for header in headers.iter().filter(|header| !header.deep) {
         let Vec2(width, height) = header.layer_size;
         let pixel: usize = header.channels.list.iter().map(|c| c.sample_type.bytes_per_sample()).sum();
         let part = width.checked_mul(height).and_then(|pixels| pixels.checked_mul(pixel));
@@ -251,6 +294,32 @@ fn check_memory(headers: &[Header]) -> Result<(), String> {
     Vec::<u8>::new()
         .try_reserve_exact(bytes)
         .map_err(|_| format!("its header claims {} MiB of pixels, more than there is memory", bytes >> 20))
+}
+
+/// Reads a flat part.
+fn part(
+    source: &mut ExrSource<BufReader<File>>,
+    index: usize,
+) -> Result<Layer<AnyChannels<FlatSamples>>, ExrError> {
+    let count = source.headers()[index].channels.list.len();
+    let planes = source.read(index, &(0..count).collect::<Vec<_>>())?;
+    let header = &source.headers()[index];
+    let channels = header.channels.list.iter().zip(planes).map(|(channel, samples)| AnyChannel {
+        name: channel.name.clone(),
+        sample_data: samples,
+        quantize_linearly: channel.quantize_linearly,
+        sampling: Vec2(1, 1),
+    });
+    let blocks = match header.blocks {
+        BlockDescription::ScanLines => Blocks::ScanLines,
+        BlockDescription::Tiles(tiles) => Blocks::Tiles(tiles.tile_size),
+    };
+    Ok(Layer {
+        channel_data: AnyChannels { list: channels.collect() },
+        attributes: header.own_attributes.clone(),
+        size: header.layer_size,
+        encoding: Encoding { compression: header.compression, blocks, line_order: header.line_order },
+    })
 }
 
 fn part_name<C>(part: &Layer<C>) -> String {

@@ -170,6 +170,26 @@ fn grey_and_layered_colours_are_replaced_where_they_stand() {
 }
 
 #[test]
+fn luminance_and_chroma_are_a_colour_that_is_replaced_by_rgb() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.exr");
+    // Luminance of (0.6, 0.3, 0.1) by Rec. 709.
+    let y = 0.34934;
+    let channels = [("BY", 0.1 / y - 1.0), ("RY", 0.6 / y - 1.0), ("Y", y)];
+    foreign(&path, None, channels.map(|(name, value)| (name, floats(value))).to_vec());
+    let mut file = ExrFile::read(&path).unwrap();
+    let own = Rgb::new(0.6, 0.3, 0.1);
+    let near = |a: Rgb| (a - own).abs().max_element() < 1e-4;
+    assert!(near(file.color().unwrap().pixels[3]));
+    file.replace_color(&ramp(2, 2), Some("noisy")).unwrap();
+    file.write(&path).unwrap();
+    let file = ExrFile::read(&path).unwrap();
+    assert_eq!(file.color().unwrap(), ramp(2, 2));
+    assert_eq!(file.channels(), ["B", "G", "R", "noisy.BY", "noisy.RY", "noisy.Y"]);
+    assert!(near(file.layer("noisy").unwrap().pixels[0]));
+}
+
+#[test]
 fn what_has_no_colour_is_an_error_that_lists_the_channels() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.exr");
@@ -179,7 +199,7 @@ fn what_has_no_colour_is_an_error_that_lists_the_channels() {
 
     let two = ["a.R", "a.G", "a.B", "b.R", "b.G", "b.B"].map(|name| (name, floats(1.0)));
     foreign(&path, None, two.to_vec());
-    assert!(matches!(read_exr(&path), Err(ImageError::NoColor { .. })));
+    assert!(matches!(read_exr(&path), Err(ImageError::NoPicture { .. })));
     let file = ExrFile::read(&path).unwrap();
     assert_eq!(file.layers(), ["a", "b"]);
     assert!(file.layer("c").unwrap_err().to_string().contains("layer `c`"));

@@ -8,6 +8,7 @@
 
 use super::exr_order::sort_attributes;
 use super::{Fact, Film, ImageError, Metadata, Pixels, atomic};
+use crate::exr_file::REC_709;
 use ::exr::prelude::*;
 use std::io::{self, Cursor, Write as _};
 use std::path::Path;
@@ -44,12 +45,7 @@ pub fn write_exr(path: &Path, film: &Film) -> std::result::Result<(), ImageError
     let layer = Layer::new(size, attributes(film), encoding, AnyChannels::sort(channels));
     let resolution = Vec2(window.film[0] as usize, window.film[1] as usize);
     let mut picture = Image::new(ImageAttributes::with_size(resolution), layer);
-    picture.attributes.chromaticities = Some(::exr::meta::attribute::Chromaticities {
-        red: Vec2(0.64, 0.33),
-        green: Vec2(0.30, 0.60),
-        blue: Vec2(0.15, 0.06),
-        white: Vec2(0.3127, 0.3290),
-    });
+    picture.attributes.chromaticities = Some(REC_709);
     write(path, |bytes| picture.write().to_buffered(bytes))
 }
 

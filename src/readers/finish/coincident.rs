@@ -3,10 +3,10 @@
 //! A ray hits one of two coincident triangles, so as a surface the emitter shines once. As a source of samples it would
 //! count twice.
 
+use super::dark::is_dark_emission;
 use crate::Location;
 use crate::draft::{Draft, DraftMesh};
 use crate::error::{Log, SceneError};
-use base::math::Rgb;
 use glam::DVec3;
 use std::collections::HashSet;
 
@@ -17,11 +17,13 @@ pub fn drop_coincident_emitters(
     log: &mut Log,
 ) -> Result<(), SceneError> {
     let mut seen = HashSet::new();
-    let shines = |mesh: &&mut DraftMesh| mesh.emission.is_some_and(|emission| emission.radiance != Rgb::ZERO);
+    let scene = &draft.scene;
+    let shines = |mesh: &&mut DraftMesh| {
+        mesh.emission.is_some_and(|emission| !is_dark_emission(&emission, mesh.material, scene))
+    };
     for mesh in draft.meshes.iter_mut().filter(shines) {
-        let positions = &mesh.positions;
         let before = mesh.triangles.len();
-        mesh.triangles.retain(|t| {
+        mesh.retain_triangles(|positions, t| {
             let corners = t.map(|i| positions.get(i as usize).copied().unwrap_or_default());
             seen.insert(turned_to_least(corners))
         });

@@ -9,6 +9,7 @@
 use super::recentre::LocalCoordinates;
 use crate::draft::{Draft, DraftMesh};
 use glam::DVec3;
+use scene::AttributeValues;
 use std::collections::BTreeMap;
 
 /// Maximum ratio of an edge's length to its distance from the camera, or to the vicinity if that is larger.
@@ -57,6 +58,11 @@ fn divide_mesh(mesh: &mut DraftMesh, is_long: impl Fn(DVec3, DVec3) -> bool, lef
                 let middle = *middles.entry([a.min(b), a.max(b)]).or_insert_with(|| add_middle(mesh, [a, b]));
                 mesh.triangles[at] = [a, middle, c];
                 mesh.triangles.push([middle, b, c]);
+                for attribute in &mut mesh.attributes {
+                    if let AttributeValues::Triangles(values) = &mut attribute.values {
+                        values.push(values[at]);
+                    }
+                }
                 *left -= 1;
             }
             None => at += 1,
@@ -76,6 +82,12 @@ fn add_middle(mesh: &mut DraftMesh, edge: [u32; 2]) -> u32 {
     // The middle normal is not of unit length, so interpolation along the edge gives the values of the whole edge.
     add(&mut mesh.normals, edge, |a, b| 0.5 * a + 0.5 * b);
     add(&mut mesh.uvs, edge, |a, b| 0.5 * a + 0.5 * b);
+    add(&mut mesh.tangents, edge, |a, b| 0.5 * a + 0.5 * b);
+    for attribute in &mut mesh.attributes {
+        if let AttributeValues::Vertices(values) = &mut attribute.values {
+            add(values, edge, |a, b| 0.5 * a + 0.5 * b);
+        }
+    }
     vertex
 }
 

@@ -7,10 +7,14 @@
 //! Very small and very large scenes get another unit of length, a power of two. So no product of lengths leaves the
 //! range of f32.
 
+use crate::attributes::NamedAttribute;
 use crate::draft::{Draft, DraftCamera, DraftMesh};
 use base::math::Rgb;
 use glam::{DVec3, Vec3};
-use scene::{Camera, Cameras, DeltaLight, MAX_RATIO, Material, Mesh, Projection, Projector, Relief, Scene};
+use scene::{
+    Attribute, AttributeId, Camera, Cameras, DeltaLight, MAX_RATIO, Material, Mesh, Projection, Projector,
+    Relief, Scene,
+};
 
 /// Approximate number of corners that are sampled to compute the vicinity.
 const SAMPLED_CORNERS: usize = 1 << 16;
@@ -129,14 +133,21 @@ fn vicinity(draft: &Draft, camera: DVec3) -> f64 {
 pub(crate) fn recentre(draft: Draft, coordinates: &LocalCoordinates) -> (Scene, Cameras) {
     let scale = coordinates.scale();
     let local = |p: DVec3| coordinates.local(p);
+    let names = draft.attribute_names;
+    let attribute = |NamedAttribute { name, values }: NamedAttribute| {
+        let number = names.iter().position(|other| *other == name)?;
+        Some(Attribute { id: AttributeId(number as u32), values })
+    };
     let mesh = |m: DraftMesh| Mesh {
         name: m.name,
         positions: m.positions.into_iter().map(local).collect(),
         normals: m.normals,
         uvs: m.uvs,
+        tangents: m.tangents,
         triangles: m.triangles,
         material: m.material,
         emission: m.emission,
+        attributes: m.attributes.into_iter().filter_map(attribute).collect(),
     };
     let cameras = Cameras {
         still: coordinates.local_camera(&draft.shot.camera),
@@ -153,17 +164,20 @@ pub(crate) fn recentre(draft: Draft, coordinates: &LocalCoordinates) -> (Scene, 
         vicinity: coordinates.vicinity,
         ..draft.scene
     };
-    scene.materials.iter_mut().for_each(|material| scale_heights(material, scale));
+    scene.materials.iter_mut().for_each(|material| scale_lengths(material, scale));
     (scene, cameras)
 }
 
-/// Converts heights of reliefs to the local unit.
-fn scale_heights(material: &mut Material, by: f64) {
+/// Converts heights of reliefs and absorption by length to the local unit.
+fn scale_lengths(material: &mut Material, by: f64) {
+    if let Some(absorption) = &mut material.absorption {
+        *absorption = (absorption.as_dvec3() / by).min(DVec3::splat(f32::MAX.into())).as_vec3();
+    }
     if let Some(Relief::Heights { scale, .. }) = &mut material.relief {
         *scale = (f64::from(*scale) * by).clamp(f32::MIN.into(), f32::MAX.into()) as f32;
     }
     if let Some(blend) = &mut material.blend {
-        scale_heights(&mut blend.other, by);
+        scale_lengths(&mut blend.other, by);
     }
 }
 
@@ -241,6 +255,23 @@ mod tests {
                 a.positions.iter().zip(&b.positions).map(|(a, b)| (a - b * 1e3).length()).fold(0.0, f32::max);
             // Rounding of f64 at 1e6, magnified by 1e3.
             assert!(worst < 1e-6, "{worst}");
+        }
+    }
+
+    #[test]
+    fn glass_absorbs_the_same_in_any_unit() {
+        for scale in [1e-6, 1.0, 1e9] {
+            let text = format!(
+                "material = [{{ name = \"m\", kind = \"glass\", attenuation_colour = 0.5, attenuation_distance = {scale:e} }}]\n\
+                mesh = [{{ shape = \"sphere\", material = \"m\", transform = [{{ scale = {scale:e} }}] }}]\n"
+            );
+            let folder = tempfile::tempdir().unwrap();
+            let path = folder.path().join("s.toml");
+            std::fs::write(&path, text).unwrap();
+            let scene = load(&path, &LoadOptions::default()).unwrap().scene;
+            let distance = (scale / scene.unit()) as f32;
+            let left = (-scene.materials[0].absorption.unwrap().x * distance).exp();
+            assert!((left - 0.5).abs() < 1e-5 && (scene.exponent != 0) == (scale != 1.0), "{scale}: {left}");
         }
     }
 

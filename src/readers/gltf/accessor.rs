@@ -35,66 +35,99 @@ impl GltfFile {
         what: &str,
     ) -> Result<Vec<[f32; N]>, SceneError> {
         let accessor = self.get(index, "accessor")?;
-        let wrong = |problem: &str| self.wrong(format!("{what}: accessor {} {problem}", index.value()));
-        let Checked::Valid(component) = &accessor.component_type else {
-            return Err(wrong("has an unknown type of component"));
-        };
-        let component = component.0;
-        if components(&accessor.type_) != Some(N) || component == ComponentType::U32 {
-            return Err(wrong("is of another type than it should be"));
+        let component = self.component(accessor, index, N, what)?;
+        if component == ComponentType::U32 {
+            return Err(self.misfit(index, what, "is of another type than it should be"));
         }
+        let number = |bytes: &[u8]| number(component, bytes, accessor.normalized);
+        self.numbers(accessor, index, component.size(), what, number)
+    }
+
+    /// Returns the vectors of `N` unsigned integers of the accessor.
+    pub fn integers<const N: usize>(
+        &self,
+        index: Index<Accessor>,
+        what: &str,
+    ) -> Result<Vec<[u32; N]>, SceneError> {
+        let accessor = self.get(index, "accessor")?;
+        let component = self.component(accessor, index, N, what)?;
+        if !matches!(component, ComponentType::U8 | ComponentType::U16 | ComponentType::U32) {
+            return Err(self.misfit(index, what, "is of another type than it should be"));
+        }
+        self.numbers(accessor, index, component.size(), what, unsigned)
+    }
+
+    /// Returns the type of the components of an accessor of vectors of `n` numbers.
+    fn component(
+        &self,
+        accessor: &Accessor,
+        index: Index<Accessor>,
+        n: usize,
+        what: &str,
+    ) -> Result<ComponentType, SceneError> {
+        let Checked::Valid(component) = &accessor.component_type else {
+            return Err(self.misfit(index, what, "has an unknown type of component"));
+        };
+        let fits = match &accessor.type_ {
+            // Columns of matrices of bytes and shorts are padded; no file needs them.
+            Checked::Valid(Type::Mat4) => n == 16 && component.0 == ComponentType::F32,
+            Checked::Valid(Type::Mat2 | Type::Mat3) | Checked::Invalid => false,
+            Checked::Valid(kind) => n == kind.multiplicity(),
+        };
+        if fits {
+            Ok(component.0)
+        } else {
+            Err(self.misfit(index, what, "is of another type than it should be"))
+        }
+    }
+
+    fn misfit(&self, index: Index<Accessor>, what: &str, problem: &str) -> SceneError {
+        self.wrong(format!("{what}: accessor {} {problem}", index.value()))
+    }
+
+    /// Returns the vectors of an accessor whose components take `size` bytes each. Sparse values replace others.
+    fn numbers<T: Copy + Default, const N: usize>(
+        &self,
+        accessor: &Accessor,
+        index: Index<Accessor>,
+        size: usize,
+        what: &str,
+        number: impl Fn(&[u8]) -> T,
+    ) -> Result<Vec<[T; N]>, SceneError> {
         let decode = |bytes: &[u8]| {
-            let mut vector = [0.0; N];
-            let parts = bytes.chunks_exact(component.size());
-            vector
-                .iter_mut()
-                .zip(parts)
-                .for_each(|(v, part)| *v = number(component, part, accessor.normalized));
+            let mut vector = [T::default(); N];
+            vector.iter_mut().zip(bytes.chunks_exact(size)).for_each(|(v, part)| *v = number(part));
             vector
         };
-        let size = N * component.size();
-        let mut vectors: Vec<[f32; N]> = match accessor.buffer_view {
+        let size = N * size;
+        if let Some(bytes) = self.decoded(index) {
+            return Ok(bytes.chunks_exact(size).map(decode).collect());
+        }
+        let mut vectors: Vec<[T; N]> = match accessor.buffer_view {
             Some(view) => {
                 let offset = accessor.byte_offset.unwrap_or_default();
                 self.elements(view, offset, accessor.count, size, what)?.iter().map(decode).collect()
             }
-            None if accessor.count.0 <= MAX_ZEROS => vec![[0.0; N]; accessor.count.0 as usize],
-            None => return Err(wrong("claims to have more elements than any real model")),
+            None if accessor.count.0 <= MAX_ZEROS => vec![[T::default(); N]; accessor.count.0 as usize],
+            None => {
+                return Err(self.misfit(index, what, "claims to have more elements than any real model"));
+            }
         };
         if let Some(sparse) = &accessor.sparse {
             let (indices, values) = (&sparse.indices, &sparse.values);
             let Checked::Valid(kind) = &indices.component_type else {
-                return Err(wrong("has sparse indices of an unknown type"));
+                return Err(self.misfit(index, what, "has sparse indices of an unknown type"));
             };
             let at =
                 self.elements(indices.buffer_view, indices.byte_offset, sparse.count, kind.0.size(), what)?;
             let new = self.elements(values.buffer_view, values.byte_offset, sparse.count, size, what)?;
             for (at, new) in at.iter().zip(new.iter()) {
                 let place = vectors.get_mut(unsigned(at) as usize);
-                *place.ok_or_else(|| wrong("has a sparse index that is out of range"))? = decode(new);
+                let missing = || self.misfit(index, what, "has a sparse index that is out of range");
+                *place.ok_or_else(missing)? = decode(new);
             }
         }
         Ok(vectors)
-    }
-
-    /// Returns the unsigned integers of the accessor.
-    pub fn integers(&self, index: Index<Accessor>, what: &str) -> Result<Vec<u32>, SceneError> {
-        let accessor = self.get(index, "accessor")?;
-        let wrong = |problem: &str| self.wrong(format!("{what}: accessor {} {problem}", index.value()));
-        let size = match &accessor.component_type {
-            Checked::Valid(kind) => match kind.0 {
-                kind @ (ComponentType::U8 | ComponentType::U16 | ComponentType::U32) => kind.size(),
-                _ => return Err(wrong("is of another type than it should be")),
-            },
-            Checked::Invalid => return Err(wrong("has an unknown type of component")),
-        };
-        let (Some(1), Some(view), None) =
-            (components(&accessor.type_), accessor.buffer_view, &accessor.sparse)
-        else {
-            return Err(wrong("is not a plain list of numbers"));
-        };
-        let offset = accessor.byte_offset.unwrap_or_default();
-        Ok(self.elements(view, offset, accessor.count, size, what)?.iter().map(unsigned).collect())
     }
 
     fn elements(
@@ -117,14 +150,6 @@ impl GltfFile {
             return Err(self.wrong(what));
         }
         Ok(Elements { bytes: &bytes[offset.0 as usize..], stride, size, count: count.0 as usize })
-    }
-}
-
-/// Returns the number of components of a type.
-fn components(kind: &Checked<Type>) -> Option<usize> {
-    match kind {
-        Checked::Valid(kind) => Some(kind.multiplicity()),
-        Checked::Invalid => None,
     }
 }
 

@@ -1,4 +1,4 @@
-//! Animated transforms of nodes.
+//! Animated transforms of nodes, and weights of morph targets.
 
 use super::document::GltfFile;
 use super::nodes::{Local, quaternion};
@@ -15,13 +15,20 @@ pub(super) struct Track {
     /// Times of the keys in seconds, ascending.
     times: Vec<f32>,
     /// Value of each key. A spline has three values per key: tangent in, value, tangent out.
-    values: Vec<[f32; 4]>,
+    values: Vec<f32>,
+    /// Number of components of a value.
+    width: usize,
 }
 
 impl Track {
     /// Returns the first and last time of the keys, in seconds.
     pub fn span(&self) -> [f32; 2] {
         [self.times[0], self.times[self.times.len() - 1]]
+    }
+
+    /// True if the track moves its node.
+    pub fn moves(&self) -> bool {
+        self.property != Property::MorphTargetWeights
     }
 
     /// Sets the property to its value at `time`.
@@ -35,8 +42,34 @@ impl Track {
         }
     }
 
+    /// Returns the weights of morph targets at `time`; `None` if the track moves something else.
+    pub fn weights(&self, time: f64) -> Option<Vec<f32>> {
+        if self.moves() {
+            return None;
+        }
+        let mix = |parts: &[(usize, f64)]| {
+            let component =
+                |c: usize| parts.iter().map(|(i, weight)| f64::from(self.value(*i)[c]) * weight).sum::<f64>();
+            (0..self.width).map(|c| component(c) as f32).collect()
+        };
+        Some(match self.at(time) {
+            At::Key(i) => self.value(i).to_vec(),
+            At::Between(i, t) => mix(&[(i, 1.0 - t), (i + 1, t)]),
+            At::Spline { points, weights } => {
+                mix(&std::array::from_fn::<_, 4, _>(|k| (points[k], weights[k])))
+            }
+        })
+    }
+
+    fn value(&self, i: usize) -> &[f32] {
+        &self.values[i * self.width..][..self.width]
+    }
+
     fn vector(&self, time: f64) -> DVec3 {
-        let key = |i: usize| DVec3::from_slice(&self.values[i].map(f64::from));
+        let key = |i: usize| match *self.value(i) {
+            [x, y, z] => DVec3::new(x.into(), y.into(), z.into()),
+            _ => DVec3::ZERO,
+        };
         match self.at(time) {
             At::Key(i) => key(i),
             At::Between(i, t) => key(i).lerp(key(i + 1), t),
@@ -47,13 +80,17 @@ impl Track {
     }
 
     fn rotation(&self, time: f64) -> DQuat {
+        let key = |i: usize| match *self.value(i) {
+            [x, y, z, w] => [x, y, z, w],
+            _ => [0.0; 4],
+        };
         match self.at(time) {
-            At::Key(i) => quaternion(self.values[i]),
-            At::Between(i, t) => quaternion(self.values[i]).slerp(quaternion(self.values[i + 1]), t),
+            At::Key(i) => quaternion(key(i)),
+            At::Between(i, t) => quaternion(key(i)).slerp(quaternion(key(i + 1)), t),
             At::Spline { points, weights } => {
                 let mut sum = [0.0; 4];
                 for (i, weight) in points.into_iter().zip(weights) {
-                    sum.iter_mut().zip(self.values[i]).for_each(|(sum, v)| *sum += v * weight as f32);
+                    sum.iter_mut().zip(key(i)).for_each(|(sum, v)| *sum += v * weight as f32);
                 }
                 quaternion(sum)
             }
@@ -99,37 +136,37 @@ pub(super) fn tracks(
     is_wanted: impl Fn(usize) -> bool,
 ) -> Result<Vec<Track>, SceneError> {
     let channels = animation.channels.iter().filter(|channel| is_wanted(channel.target.node.value()));
-    let tracks: Result<Vec<Option<Track>>, SceneError> =
-        channels.map(|channel| track(document, animation, channel)).collect();
-    Ok(tracks?.into_iter().flatten().collect())
+    channels.map(|channel| track(document, animation, channel)).collect()
 }
 
-fn track(document: &GltfFile, animation: &Animation, channel: &Channel) -> Result<Option<Track>, SceneError> {
+fn track(document: &GltfFile, animation: &Animation, channel: &Channel) -> Result<Track, SceneError> {
     let what = format!("the animation of node {}", channel.target.node.value());
     let wrong = |problem: &str| document.wrong(format!("{what} {problem}"));
-    let property = match channel.target.path {
-        Checked::Valid(Property::MorphTargetWeights) => return Ok(None),
-        Checked::Valid(property) => property,
-        Checked::Invalid => return Err(wrong("is of an unknown property")),
+    let Checked::Valid(property) = channel.target.path else {
+        return Err(wrong("is of an unknown property"));
     };
     let sampler = animation.samplers.get(channel.sampler.value()).ok_or_else(|| wrong("has no sampler"))?;
     let Checked::Valid(interpolation) = sampler.interpolation else {
         return Err(wrong("has an unknown interpolation"));
     };
-    let times: Vec<f32> = document.vectors::<1>(sampler.input, &what)?.into_iter().map(|[t]| t).collect();
-    let values: Vec<[f32; 4]> = match property {
-        Property::Rotation => document.vectors::<4>(sampler.output, &what)?,
-        _ => {
-            let vectors = document.vectors::<3>(sampler.output, &what)?;
-            vectors.into_iter().map(|[x, y, z]| [x, y, z, 0.0]).collect()
+    let times: Vec<f32> = document.vectors::<1>(sampler.input, &what)?.into_flattened();
+    let each = if interpolation == Interpolation::CubicSpline { 3 } else { 1 };
+    let (values, width) = match property {
+        Property::Rotation => (document.vectors::<4>(sampler.output, &what)?.into_flattened(), 4),
+        Property::Translation | Property::Scale => {
+            (document.vectors::<3>(sampler.output, &what)?.into_flattened(), 3)
+        }
+        Property::MorphTargetWeights => {
+            let values = document.vectors::<1>(sampler.output, &what)?.into_flattened();
+            let width = values.len() / times.len().max(1) / each;
+            (values, width)
         }
     };
-    let each = if interpolation == Interpolation::CubicSpline { 3 } else { 1 };
-    if times.is_empty() || values.len() != each * times.len() {
-        return Err(wrong(&format!("has {} keys and {} values", times.len(), values.len())));
+    if times.is_empty() || values.len() != each * times.len() * width {
+        return Err(wrong(&format!("has {} keys and {} values", times.len(), values.len() / width.max(1))));
     }
     if !times.iter().all(|time| time.is_finite()) || times.windows(2).any(|pair| !(pair[0] < pair[1])) {
         return Err(wrong("has keys that are out of order"));
     }
-    Ok(Some(Track { node: channel.target.node.value(), property, interpolation, times, values }))
+    Ok(Track { node: channel.target.node.value(), property, interpolation, times, values, width })
 }

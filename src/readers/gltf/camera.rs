@@ -8,6 +8,7 @@ use crate::draft::{DEFAULT_RESOLUTION, DraftCamera, Shot};
 use crate::error::SceneError;
 use base::math::{right_of, unit};
 use glam::{DMat4, DVec3};
+use gltf_json::animation::{Channel, Property};
 use gltf_json::camera::{Camera, Type};
 use gltf_json::validation::Checked;
 use scene::{MAX_FRAMES, PixelFilter, Projection};
@@ -21,6 +22,8 @@ pub(super) struct Viewer<'a> {
     pub tree: &'a [Placed],
     pub to_world: DMat4,
     pub fps: f64,
+    /// True if the pose of the model is that of a time.
+    pub is_posed: bool,
 }
 
 impl Viewer<'_> {
@@ -62,7 +65,10 @@ impl Viewer<'_> {
                 Some(found.ok_or_else(unknown)?)
             }
         };
-        let Some(&(at, camera)) = found else { return Ok(None) };
+        let Some(&(at, camera)) = found else {
+            self.report_still(|_| false, report);
+            return Ok(None);
+        };
         if cameras.len() > 1 && wanted.is_none() {
             let what = format!("there are {} cameras: {}", cameras.len(), names(&cameras));
             report.note(&what, "the first is used; choose another with --camera", "");
@@ -86,14 +92,17 @@ impl Viewer<'_> {
     ) -> Result<Vec<DraftCamera>, SceneError> {
         let chain: Vec<usize> = std::iter::successors(Some(at), |&at| self.tree[at].parent).collect();
         let is_on_the_way = |node: usize| chain.iter().any(|&at| self.tree[at].node == node);
+        self.report_still(is_on_the_way, report);
         let mut of_camera: Option<Vec<Track>> = None;
         for animation in &self.document.root.animations {
             let name = animation.name.as_deref().unwrap_or_default();
-            let tracks = animation::tracks(self.document, animation, is_on_the_way)?;
-            if animation.channels.iter().any(|channel| !is_on_the_way(channel.target.node.value())) {
+            let mut tracks = animation::tracks(self.document, animation, is_on_the_way)?;
+            tracks.retain(Track::moves);
+            if !self.is_posed && tracks.len() < animation.channels.len() {
+                let what = "the animation of anything but the camera is not modelled";
                 report.lacks(
-                    "the animation of anything but the camera is not modelled",
-                    "it stands still",
+                    what,
+                    "it stands still; `time` of a mesh in a TOML scene chooses its pose",
                     name,
                 );
             }
@@ -117,6 +126,26 @@ impl Viewer<'_> {
             self.camera(&self.moved(&chain, &tracks, time), lens, resolution)
         };
         (0..frames).map(frame).collect()
+    }
+
+    /// Reports animations that move anything but the camera, which nodes for which `is_on_the_way` holds carry.
+    fn report_still(&self, is_on_the_way: impl Fn(usize) -> bool, report: &mut Findings) {
+        let is_still = |channel: &Channel| {
+            let moves = !matches!(channel.target.path, Checked::Valid(Property::MorphTargetWeights));
+            !(moves && is_on_the_way(channel.target.node.value()))
+        };
+        // The first animation of a model that is posed is read.
+        for animation in self.document.root.animations.iter().skip(usize::from(self.is_posed)) {
+            if animation.channels.iter().any(is_still) {
+                let name = animation.name.as_deref().unwrap_or_default();
+                let what = "the animation of anything but the camera is not modelled";
+                report.lacks(
+                    what,
+                    "it stands still; `time` of a mesh in a TOML scene chooses its pose",
+                    name,
+                );
+            }
+        }
     }
 
     /// Returns the transform of the first node in a chain of parents to the file's coordinates, at a time in seconds.

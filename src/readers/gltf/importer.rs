@@ -4,8 +4,13 @@ use super::camera::FRAMES_PER_SECOND;
 use super::document::GltfFile;
 use super::light;
 use super::mesh;
+use super::mesh::VertexColours;
+use super::morph;
 use super::nodes::Placed;
+use super::pose::Pose;
 use super::report::Findings;
+use super::skin;
+use super::skin::Influences;
 use crate::error::SceneError;
 use crate::mesh::{Normals, Placement, RawMesh};
 use crate::plan::{Appearance, Contents, ImageSource, MaterialPlan, MeshPlan, MeshSource};
@@ -13,7 +18,7 @@ use crate::selection::PartSelection;
 use glam::DMat4;
 use gltf_json::Index;
 use gltf_json::mesh::Mesh;
-use scene::{Emission, MaterialId};
+use scene::{Emission, MaterialId, Relief};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -31,6 +36,8 @@ pub(crate) struct ImportOptions {
     pub lumens_per_watt: Option<f32>,
     /// Frames per second of the camera's animation.
     pub fps: f64,
+    /// Time in seconds whose pose the model takes; `None` for its pose at rest.
+    pub time: Option<f64>,
     /// Name of the camera, or number from 1.
     pub camera: Option<String>,
 }
@@ -45,6 +52,7 @@ impl Default for ImportOptions {
             emission: None,
             lumens_per_watt: None,
             fps: FRAMES_PER_SECOND,
+            time: None,
             camera: None,
         }
     }
@@ -58,17 +66,28 @@ pub(super) struct MaterialUse {
     pub uv_set: u32,
 }
 
+/// A primitive as its file describes it.
+#[derive(Clone)]
+pub(super) struct Part {
+    /// Index in the mesh.
+    primitive: usize,
+    raw: Arc<RawMesh>,
+    appearance: Appearance,
+}
+
 /// Import of a model into a plan.
 pub(super) struct Importer<'a> {
     pub document: &'a GltfFile,
+    pub tree: &'a [Placed],
+    pub pose: &'a Pose,
     pub options: &'a ImportOptions,
     pub contents: &'a mut Contents,
     pub report: Findings,
-    /// Materials read so far, by index.
-    pub surfaces: BTreeMap<Option<usize>, MaterialUse>,
+    /// Materials read so far, by index and by the colours of vertices that they are multiplied with.
+    pub surfaces: BTreeMap<(Option<usize>, VertexColours), MaterialUse>,
     pub images: BTreeMap<usize, ImageSource>,
     /// Primitives read so far, by index of the mesh.
-    pub meshes: BTreeMap<usize, Vec<(Arc<RawMesh>, Appearance)>>,
+    pub meshes: BTreeMap<usize, Vec<Part>>,
 }
 
 impl Importer<'_> {
@@ -81,9 +100,6 @@ impl Importer<'_> {
             return Err(document.wrong(format!("the transform of {name} is not finite")));
         }
         let to_world = self.options.to_world * placed.to_file;
-        if node.skin.is_some() {
-            self.report.lacks("skins are not modelled", "the mesh stands as at rest", &name);
-        }
         let light = node.extensions.as_ref().and_then(|extensions| extensions.khr_lights_punctual.as_ref());
         if let Some(light) = light {
             let light = document.get(light.light, "light")?;
@@ -92,9 +108,43 @@ impl Importer<'_> {
             self.contents.lights.push(light);
         }
         if let Some(mesh) = node.mesh {
-            for (raw, appearance) in self.primitives(mesh)? {
-                self.add(raw, appearance, &name, to_world)?;
+            self.mesh(mesh, placed, &name, to_world)?;
+        }
+        Ok(())
+    }
+
+    /// Adds a mesh in the pose of its node.
+    fn mesh(
+        &mut self,
+        index: Index<Mesh>,
+        placed: &Placed,
+        name: &str,
+        to_world: DMat4,
+    ) -> Result<(), SceneError> {
+        let document = self.document;
+        let (node, mesh) = (&document.root.nodes[placed.node], document.get(index, "mesh")?);
+        let weights = self.pose.weights(placed.node, node, mesh);
+        let joints = node.skin.map(|skin| skin::joints(document, skin, self.tree)).transpose()?;
+        for Part { primitive, mut raw, appearance } in self.primitives(index)? {
+            let what = primitive_name(mesh, index, primitive);
+            let source = &mesh.primitives[primitive];
+            if source.targets.is_some() && weights.iter().any(|weight| *weight != 0.0) {
+                morph::add_targets(Arc::make_mut(&mut raw), document, source, &weights, &what)?;
             }
+            let mut to_world = to_world;
+            if let Some(joints) = &joints {
+                match Influences::read(document, source, raw.positions.len(), &what)? {
+                    Some(influences) => {
+                        skin::bend(Arc::make_mut(&mut raw), &influences, joints, document, &what)?;
+                        to_world = self.options.to_world;
+                    }
+                    None => {
+                        let lack = "a skin whose mesh has no joints and weights";
+                        self.report.lacks(lack, "the node places the mesh", name);
+                    }
+                }
+            }
+            self.add(raw, appearance, name, to_world)?;
         }
         Ok(())
     }
@@ -126,8 +176,16 @@ impl Importer<'_> {
         })
     }
 
+    /// True if the material of an appearance, or that which replaces it, knows a direction on its surface.
+    fn has_direction(&self, appearance: Appearance) -> bool {
+        let material = self.options.material.unwrap_or(appearance.material);
+        self.contents.materials.get(material.0 as usize).is_some_and(|material| {
+            matches!(material.relief, Some(Relief::Normals { .. })) || material.anisotropy_angle().is_some()
+        })
+    }
+
     /// Returns the primitives of a mesh; each mesh is read once.
-    fn primitives(&mut self, index: Index<Mesh>) -> Result<Vec<(Arc<RawMesh>, Appearance)>, SceneError> {
+    fn primitives(&mut self, index: Index<Mesh>) -> Result<Vec<Part>, SceneError> {
         if let Some(primitives) = self.meshes.get(&index.value()) {
             return Ok(primitives.clone());
         }
@@ -135,13 +193,19 @@ impl Importer<'_> {
         let mesh = document.get(index, "mesh")?;
         let mut primitives = Vec::new();
         for (i, primitive) in mesh.primitives.iter().enumerate() {
-            let name = mesh.name.as_deref().unwrap_or("mesh");
-            let what = format!("{name} {}, primitive {i}", index.value());
-            let surface = self.surface(primitive.material)?;
-            let raw = mesh::read(document, primitive, surface.uv_set, &what, &mut self.report)?;
-            primitives.extend(raw.map(|raw| (Arc::new(raw), surface.appearance)));
+            let what = primitive_name(mesh, index, i);
+            let surface = self.surface(primitive.material, VertexColours::of(document, primitive)?)?;
+            let has_tangents = self.has_direction(surface.appearance);
+            let raw = mesh::read(document, primitive, surface.uv_set, has_tangents, &what, &mut self.report)?;
+            let part = |raw| Part { primitive: i, raw: Arc::new(raw), appearance: surface.appearance };
+            primitives.extend(raw.map(part));
         }
         self.meshes.insert(index.value(), primitives.clone());
         Ok(primitives)
     }
+}
+
+/// Returns the name of a primitive in messages.
+fn primitive_name(mesh: &Mesh, index: Index<Mesh>, primitive: usize) -> String {
+    format!("{} {}, primitive {primitive}", mesh.name.as_deref().unwrap_or("mesh"), index.value())
 }

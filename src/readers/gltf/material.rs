@@ -2,18 +2,19 @@
 //!
 //! Deviations:
 //! - A sheet that transmits (no thickness) is smooth, and transmits fully or not at all.
-//! - Absorption by a volume depends on the stated thickness, not on the length of a ray inside.
 //! - A clear coat is that of the principled material, which reflects a quarter of the extension's coat.
 //! - Sheen is that of the principled material.
 
 use super::importer::{Importer, MaterialUse};
+use super::mesh::VertexColours;
 use super::texture::TextureUse;
+use crate::attributes::{VERTEX_ALPHA, VERTEX_COLOUR};
 use crate::decode::Channel;
 use crate::error::SceneError;
 use crate::plan::Appearance;
 use base::math::Rgb;
 use gltf_json::Index;
-use gltf_json::extensions::material::{Material as Extensions, Volume};
+use gltf_json::extensions::material::Material as Extensions;
 use gltf_json::material::{AlphaMode, Material as Source};
 use gltf_json::texture::Info;
 use gltf_json::validation::Checked;
@@ -37,9 +38,15 @@ const ALPHA: Channel = Channel::One(3);
 
 impl Importer<'_> {
     /// Returns the material of a primitive; `None` stands for the default material.
-    pub(super) fn surface(&mut self, index: Option<Index<Source>>) -> Result<MaterialUse, SceneError> {
+    ///
+    /// Base colour and opacity are multiplied with `colours` of vertices.
+    pub(super) fn surface(
+        &mut self,
+        index: Option<Index<Source>>,
+        colours: VertexColours,
+    ) -> Result<MaterialUse, SceneError> {
         let number = index.map(|index| index.value());
-        if let Some(surface) = self.surfaces.get(&number) {
+        if let Some(surface) = self.surfaces.get(&(number, colours)) {
             return Ok(*surface);
         }
         let document = self.document;
@@ -54,11 +61,11 @@ impl Importer<'_> {
             (None, None) => "default".to_owned(),
         };
         let uv_set = self.uv_set(source, &name);
-        let emission = self.emission(source, &name)?;
-        let material = self.material(source, &name)?;
+        let emission = self.emission(source, colours, &name)?;
+        let material = self.material(source, colours, &name)?;
         let material = self.contents.add_material(material, document.place.clone());
         let surface = MaterialUse { appearance: Appearance { material, emission }, uv_set };
-        self.surfaces.insert(number, surface);
+        self.surfaces.insert((number, colours), surface);
         Ok(surface)
     }
 
@@ -76,7 +83,12 @@ impl Importer<'_> {
         sets.first().copied().unwrap_or(0)
     }
 
-    fn emission(&mut self, source: &Source, name: &str) -> Result<Option<Emission>, SceneError> {
+    fn emission(
+        &mut self,
+        source: &Source,
+        colours: VertexColours,
+        name: &str,
+    ) -> Result<Option<Emission>, SceneError> {
         let extensions = source.extensions.as_ref();
         let strength = extensions.and_then(|e| e.emissive_strength.as_ref());
         let strength = strength.map_or(1.0, |e| e.emissive_strength.0);
@@ -97,14 +109,25 @@ impl Importer<'_> {
             Some(info) => self.texture(&TextureUse::of(info), Channel::Colour, name)?,
             None => None,
         };
+        let texture = match colours {
+            VertexColours::Opaque | VertexColours::WithAlpha if is_unlit => {
+                Some(self.contents.add_attribute(VERTEX_COLOUR, texture))
+            }
+            _ => texture,
+        };
         Ok(Some(Emission { radiance: factor, texture, two_sided: source.double_sided }))
     }
 
-    fn material(&mut self, source: &Source, name: &str) -> Result<Material, SceneError> {
+    fn material(
+        &mut self,
+        source: &Source,
+        colours: VertexColours,
+        name: &str,
+    ) -> Result<Material, SceneError> {
         let default = Extensions::default();
         let extensions = source.extensions.as_ref().unwrap_or(&default);
         self.report_unread(source, extensions, name);
-        let opacity = self.opacity(source, name)?;
+        let opacity = self.opacity(source, colours, name)?;
         let relief = self.relief(source, name)?;
         let material =
             Material { name: name.to_owned(), two_sided: true, opacity, relief, ..Material::default() };
@@ -112,7 +135,13 @@ impl Importer<'_> {
             return Ok(material);
         }
         let pbr = &source.pbr_metallic_roughness;
-        let base_color = self.base_colour(source, extensions.volume.as_ref(), name)?;
+        let base_color = self.base_colour(source, name)?;
+        let base_color = match colours {
+            VertexColours::None => base_color,
+            VertexColours::Opaque | VertexColours::WithAlpha => {
+                self.contents.times_attribute(base_color, VERTEX_COLOUR)
+            }
+        };
         let roughness =
             self.share(pbr.roughness_factor.0, pbr.metallic_roughness_texture.as_ref(), GREEN, name)?;
         let metallic =
@@ -124,6 +153,8 @@ impl Importer<'_> {
         };
         let eta = relative_index(extensions);
         let is_sheet = extensions.volume.as_ref().is_none_or(|volume| volume.thickness_factor.0 <= 0.0);
+        let volume = extensions.volume.as_ref().filter(|_| transmission.is_some() && !is_sheet);
+        let absorption = volume.and_then(|volume| self.absorption(volume, name));
         let is_smooth = matches!(roughness, Share::Constant(roughness) if roughness <= MAX_SMOOTH);
         let is_clear = matches!(spec_trans, Share::Constant(share) if share >= 1.0);
         let transmits = transmission.is_some_and(|t| t.transmission_factor.0 >= 0.5);
@@ -136,13 +167,20 @@ impl Importer<'_> {
             let white = Reflectance::Constant(Rgb::ONE);
             let glass =
                 Lobe::Dielectric { eta, thin: is_sheet, reflectance: white, transmittance: base_color };
-            return Ok(Material { lobes: vec![glass], ..material });
+            return Ok(Material { lobes: vec![glass], absorption, ..material });
         }
         let spec_trans = if is_sheet { Share::Constant(0.0) } else { spec_trans };
-        let mut principled =
-            Principled { base_color, metallic, roughness, eta, spec_trans, ..Principled::default() };
+        let mut principled = Principled {
+            base_color,
+            metallic,
+            roughness,
+            eta,
+            spec_trans,
+            tints_each_passage: true,
+            ..Principled::default()
+        };
         self.layers(&extensions.others, &mut principled, name)?;
-        Ok(Material { principled: Some(Box::new(principled)), ..material })
+        Ok(Material { principled: Some(Box::new(principled)), absorption, ..material })
     }
 
     /// Reads clear coat, sheen and anisotropy.
@@ -234,22 +272,10 @@ impl Importer<'_> {
         })
     }
 
-    fn base_colour(
-        &mut self,
-        source: &Source,
-        volume: Option<&Volume>,
-        name: &str,
-    ) -> Result<Reflectance, SceneError> {
+    fn base_colour(&mut self, source: &Source, name: &str) -> Result<Reflectance, SceneError> {
         let base = &source.pbr_metallic_roughness;
         let [r, g, b, _] = base.base_color_factor.0;
-        let mut scale = Rgb::new(r, g, b);
-        if let Some(volume) = volume.filter(|volume| volume.attenuation_distance.0.is_finite()) {
-            let exponent = volume.thickness_factor.0 / volume.attenuation_distance.0;
-            let passed = Rgb::from(volume.attenuation_color.0).max(Rgb::ZERO).powf(exponent.max(0.0));
-            scale *= passed.min(Rgb::ONE);
-            let what = "light that volumes absorb depends on their stated thickness";
-            self.report.lacks(what, "it is the same for all ways through them", name);
-        }
+        let scale = Rgb::new(r, g, b);
         let texture = match &base.base_color_texture {
             Some(info) => self.texture(&TextureUse::of(info), Channel::Colour, name)?,
             None => None,
@@ -268,14 +294,23 @@ impl Importer<'_> {
     }
 
     /// Returns the opacity according to the alpha mode; `None` if opaque.
-    fn opacity(&mut self, source: &Source, name: &str) -> Result<Option<Share>, SceneError> {
+    fn opacity(
+        &mut self,
+        source: &Source,
+        colours: VertexColours,
+        name: &str,
+    ) -> Result<Option<Share>, SceneError> {
         let base = &source.pbr_metallic_roughness;
         let factor = base.base_color_factor.0[3];
         let texture = base.base_color_texture.as_ref();
         let opacity = match (&source.alpha_mode, texture) {
             (Checked::Valid(AlphaMode::Mask), _) => {
                 let cutoff = source.alpha_cutoff.as_ref().map_or(0.5, |cutoff| cutoff.0);
-                // A texel is opaque if its alpha times the factor reaches the cutoff.
+                if colours == VertexColours::WithAlpha {
+                    let what = "opacities of vertices that a mask cuts are not modelled";
+                    self.report.lacks(what, "they are 1", name);
+                }
+                // A point is opaque if its alpha times the factor reaches the cutoff.
                 match texture {
                     Some(info) if factor >= cutoff => {
                         self.share(1.0, Some(info), Channel::AlphaFrom(cutoff / factor), name)?
@@ -283,7 +318,13 @@ impl Importer<'_> {
                     _ => Share::Constant(f32::from(u8::from(factor >= cutoff))),
                 }
             }
-            (Checked::Valid(AlphaMode::Blend), texture) => self.share(factor, texture, ALPHA, name)?,
+            (Checked::Valid(AlphaMode::Blend), texture) => {
+                let share = self.share(factor, texture, ALPHA, name)?;
+                match colours {
+                    VertexColours::WithAlpha => self.contents.times_attribute(share, VERTEX_ALPHA),
+                    VertexColours::None | VertexColours::Opaque => share,
+                }
+            }
             (Checked::Valid(AlphaMode::Opaque) | Checked::Invalid, _) => return Ok(None),
         };
         Ok(Some(opacity).filter(|opacity| *opacity != Share::Constant(1.0)))

@@ -2,19 +2,25 @@
 
 use super::document::GltfFile;
 use super::report::Findings;
+use crate::attributes::{NamedAttribute, VERTEX_ALPHA, VERTEX_COLOUR};
 use crate::error::SceneError;
 use crate::mesh::RawMesh;
-use glam::{DVec3, Vec2, Vec3};
+use base::math::Rgb;
+use glam::{DVec3, Vec2, Vec3, Vec4};
+use gltf_json::Index;
+use gltf_json::accessor::{Accessor, Type};
 use gltf_json::mesh::{Mode, Primitive, Semantic};
 use gltf_json::validation::Checked;
 
-/// Reads a primitive with the texture coordinates of set `uv_set`; `what` names it in messages.
+/// Reads a primitive with the texture coordinates of set `uv_set`; `what` names it in messages. Tangents are read if
+/// `with_tangents`.
 ///
 /// Returns `None` for points and lines.
 pub(super) fn read(
     document: &GltfFile,
     primitive: &Primitive,
     uv_set: u32,
+    with_tangents: bool,
     what: &str,
     report: &mut Findings,
 ) -> Result<Option<RawMesh>, SceneError> {
@@ -27,12 +33,6 @@ pub(super) fn read(
         }
         Checked::Invalid => return Err(document.wrong(format!("{what}: its mode is unknown"))),
     };
-    if attribute(Semantic::Colors(0)).is_some() {
-        report.lacks("colours of vertices are not modelled", "their factor is left out", what);
-    }
-    if primitive.targets.as_ref().is_some_and(|targets| !targets.is_empty()) {
-        report.lacks("morph targets are not modelled", "the base shape stands", what);
-    }
     let Some(positions) = attribute(Semantic::Positions) else {
         return Err(document.wrong(format!("{what} has no positions")));
     };
@@ -45,7 +45,22 @@ pub(super) fn read(
         Some(uvs) => document.vectors::<2>(uvs, what)?,
         None => Vec::new(),
     };
-    for (name, length) in [("normals", normals.len()), ("texture coordinates", uvs.len())] {
+    // Tangents without normals do not count (glTF 2.0 specification, section 3.7.2.1).
+    let tangents = match attribute(Semantic::Tangents) {
+        Some(tangents) if with_tangents && !normals.is_empty() => document.vectors::<4>(tangents, what)?,
+        _ => Vec::new(),
+    };
+    let attributes = match attribute(Semantic::Colors(0)) {
+        Some(colours) => attributes(document, colours, what)?,
+        None => Vec::new(),
+    };
+    let colours = attributes.first().map_or(0, |colours| colours.values.all().len());
+    for (name, length) in [
+        ("normals", normals.len()),
+        ("texture coordinates", uvs.len()),
+        ("tangents", tangents.len()),
+        ("colours", colours),
+    ] {
         if length != 0 && length != positions.len() {
             return Err(
                 document.wrong(format!("{what} has {} vertices and {length} {name}", positions.len()))
@@ -53,16 +68,61 @@ pub(super) fn read(
         }
     }
     let corners = match primitive.indices {
-        Some(indices) => document.integers(indices, what)?,
+        Some(indices) => document.integers::<1>(indices, what)?.into_flattened(),
         None => (0..positions.len() as u32).collect(),
     };
     Ok(Some(RawMesh {
         positions: positions.iter().map(|p| DVec3::from(p.map(f64::from))).collect(),
         normals: normals.into_iter().map(Vec3::from).collect(),
         uvs: uvs.into_iter().map(Vec2::from).collect(),
+        tangents: tangents.into_iter().map(Vec4::from).collect(),
         triangles: triangles(&corners, mode),
-        groups: Vec::new(),
+        attributes,
+        ..RawMesh::default()
     }))
+}
+
+/// Returns the colours of vertices: their colour, and their opacity if there is one.
+fn attributes(
+    document: &GltfFile,
+    accessor: Index<Accessor>,
+    what: &str,
+) -> Result<Vec<NamedAttribute>, SceneError> {
+    let rgb = |colours: Vec<[f32; 3]>| {
+        NamedAttribute::of_vertices(VERTEX_COLOUR, colours.into_iter().map(Rgb::from).collect())
+    };
+    if !has_alpha(document, accessor)? {
+        return Ok(vec![rgb(document.vectors::<3>(accessor, what)?)]);
+    }
+    let colours = document.vectors::<4>(accessor, what)?;
+    let alpha = colours.iter().map(|[.., alpha]| Rgb::splat(*alpha)).collect();
+    let colours = rgb(colours.into_iter().map(|[r, g, b, _]| [r, g, b]).collect());
+    Ok(vec![colours, NamedAttribute::of_vertices(VERTEX_ALPHA, alpha)])
+}
+
+/// Returns true if the elements of an accessor have a fourth component.
+fn has_alpha(document: &GltfFile, accessor: Index<Accessor>) -> Result<bool, SceneError> {
+    Ok(matches!(document.get(accessor, "accessor")?.type_, Checked::Valid(Type::Vec4)))
+}
+
+/// Colours of the vertices of a primitive.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum VertexColours {
+    None,
+    Opaque,
+    WithAlpha,
+}
+
+impl VertexColours {
+    /// Returns which colours a primitive has.
+    pub fn of(document: &GltfFile, primitive: &Primitive) -> Result<VertexColours, SceneError> {
+        let colours = primitive.attributes.get(&Checked::Valid(Semantic::Colors(0)));
+        Ok(match colours {
+            None => VertexColours::None,
+            Some(colours) if has_alpha(document, *colours)? => VertexColours::WithAlpha,
+            Some(_) => VertexColours::Opaque,
+        })
+    }
 }
 
 fn triangles(corners: &[u32], mode: Mode) -> Vec<[u32; 3]> {

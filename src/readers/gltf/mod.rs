@@ -1,25 +1,34 @@
-//! glTF 2.0, as text or binary: meshes by instance, metallic-roughness materials, punctual lights, and cameras with
-//! their animation.
+//! glTF 2.0, as text or binary: meshes by instance, in the pose of their skins and morph targets, metallic-roughness
+//! materials, punctual lights, and cameras with their animation.
 //!
 //! The data model is that of the crate `gltf-json`, the lower half of `gltf`. The upper half panics on wrong accessor
 //! types and missing accessors, and follows cycles of nodes. So the checks here look up objects and read accessors.
 //!
 //! Deviations: surfaces have two sides even if the file asks for culling. Instances of a mesh are copies. A warning
-//! names every unsupported feature and the objects that ask for it.
+//! names every unsupported feature and the objects that ask for it. Without tangents, the frames of normal maps are
+//! those of the triangles, not those of MikkTSpace.
 //!
 //! Units: see `light`.
 
 mod accessor;
 mod animation;
 mod camera;
+mod container;
 mod document;
+mod draco;
 mod importer;
 mod light;
 mod material;
 mod mesh;
+mod meshopt;
+mod morph;
 mod nodes;
+mod pose;
 mod report;
+mod skin;
+mod statements;
 mod texture;
+mod volume;
 
 use crate::draft::{DEFAULT_RESOLUTION, DraftCamera, Shot};
 use crate::error::{Location, Log, SceneError};
@@ -32,6 +41,7 @@ use camera::Viewer;
 use document::GltfFile;
 use glam::DVec3;
 use importer::Importer;
+use pose::Pose;
 use report::Findings;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -76,12 +86,19 @@ pub fn import(
     log: &mut Log,
 ) -> Result<Imported, SceneError> {
     let document = GltfFile::open(path, from)?;
-    let tree = nodes::tree(&document, &options.selection)?;
+    if let (Some(time), true) = (options.time, document.root.animations.is_empty()) {
+        let what = format!("time is {time}, and {} has no animation", path.display());
+        return Err(from.wrong(what, "leave time out"));
+    }
+    let pose = Pose::at(&document, options.time)?;
+    let tree = nodes::tree(&document, &options.selection, |index, node| pose.local(index, node))?;
     if !tree.iter().any(|placed| placed.selected) && !options.selection.only.is_empty() {
         return Err(from.undefined("node", &options.selection.only.join("\", \"")));
     }
     let mut importer = Importer {
         document: &document,
+        tree: &tree,
+        pose: &pose,
         options,
         contents,
         report: Findings::default(),
@@ -93,10 +110,15 @@ pub fn import(
         importer.node(placed)?;
     }
     let mut report = importer.report;
-    for name in document::unread_extensions(&document.root) {
+    for (what, name) in &document.unread.findings {
+        report.lacks(what, "it is left out", name);
+    }
+    for name in document::unread_extensions(&document) {
         report.lacks(&format!("the extension {name} is not modelled"), "it is left out", "");
     }
-    let viewer = Viewer { document: &document, tree: &tree, to_world: options.to_world, fps: options.fps };
+    let is_posed = options.time.is_some();
+    let viewer =
+        Viewer { document: &document, tree: &tree, to_world: options.to_world, fps: options.fps, is_posed };
     let shot = viewer.shot(options.camera.as_deref(), &mut report)?;
     report.write(&document.place, log)?;
     Ok(Imported { shot, sources: document.sources })

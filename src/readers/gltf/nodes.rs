@@ -60,8 +60,13 @@ pub(super) struct Placed {
     pub selected: bool,
 }
 
-/// Returns the nodes of the file's default scene, parents before their children.
-pub(super) fn tree(document: &GltfFile, selection: &PartSelection) -> Result<Vec<Placed>, SceneError> {
+/// Returns the nodes of the file's default scene, parents before their children; `local` returns the transform of a
+/// node by its index.
+pub(super) fn tree(
+    document: &GltfFile,
+    selection: &PartSelection,
+    local: impl Fn(usize, &Node) -> Local,
+) -> Result<Vec<Placed>, SceneError> {
     let nodes = &document.root.nodes;
     let mut seen = vec![false; nodes.len()];
     let mut tree: Vec<Placed> = Vec::new();
@@ -82,7 +87,8 @@ pub(super) fn tree(document: &GltfFile, selection: &PartSelection) -> Result<Vec
             Some(above) => above.selected,
             None => selection.only.is_empty(),
         };
-        let to_file = above.map_or(DMat4::IDENTITY, |above| above.to_file) * Local::of(node).matrix();
+        let to_file =
+            above.map_or(DMat4::IDENTITY, |above| above.to_file) * local(index.value(), node).matrix();
         tree.push(Placed { node: index.value(), parent, to_file, selected });
         let at = tree.len() - 1;
         waiting.extend(node.children.iter().flatten().rev().map(|child| (*child, Some(at))));

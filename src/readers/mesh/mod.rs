@@ -4,21 +4,33 @@
 //! does.
 //!
 //! Front sides: Mitsuba uses the shading normal (for emission and one-sided materials), this renderer the winding. So
-//! the winding is reversed if the vertex normals oppose it, as with mirrored transforms.
+//! the winding is reversed if the vertex normals oppose it. A transform that mirrors reverses the winding, too: the
+//! outside stays outside, with or without normals. This is the rule of glTF 2.0 and of Mitsuba 3 later than 3.9.1.
+//! Mitsuba up to 3.9.1 turns mirrored meshes without normals inside out.
 
+pub mod map_options;
+pub mod material_parts;
 pub mod mtl;
+pub(crate) mod mtl_statements;
 pub mod obj;
+pub mod obj_references;
+mod obj_statements;
 pub mod ply;
+mod ply_attributes;
+mod ply_statements;
 mod polygon;
 pub mod serialized;
 pub mod shapes;
 mod smooth;
+pub mod stl;
+mod wavefront;
 
 pub(crate) use smooth::vertex_normals as smooth_normals;
 
+use crate::attributes::{NamedAttribute, reorder};
 use crate::draft::DraftMesh;
 use base::math::unit;
-use glam::{DMat4, DVec3, Vec2, Vec3};
+use glam::{DMat3, DMat4, DVec3, Vec2, Vec3, Vec4};
 
 /// A mesh in object coordinates, as its file describes it.
 #[derive(Clone, Debug, Default)]
@@ -28,9 +40,12 @@ pub(crate) struct RawMesh {
     pub normals: Vec<Vec3>,
     /// Texture coordinates of each vertex, or empty; v as in the file.
     pub uvs: Vec<Vec2>,
+    /// Tangent of each vertex (see [`scene::Mesh::tangents`]), or empty.
+    pub tangents: Vec<Vec4>,
     pub triangles: Vec<[u32; 3]>,
     /// Material groups: name and first triangle, ascending.
     pub groups: Vec<(String, usize)>,
+    pub attributes: Vec<NamedAttribute>,
 }
 
 /// Shading normals of a mesh.
@@ -62,41 +77,53 @@ pub fn place(raw: RawMesh, how: &Placement) -> DraftMesh {
     let mut mesh = DraftMesh {
         positions: raw.positions.iter().map(|&p| how.to_world.transform_point3(p)).collect(),
         triangles: raw.triangles,
+        attributes: raw.attributes,
         ..DraftMesh::default()
     };
     mesh.uvs = raw.uvs;
     if how.v_down {
         mesh.uvs.iter_mut().for_each(|uv| uv.y = 1.0 - uv.y);
     }
+    let linear = DMat3::from_mat4(how.to_world);
+    let is_mirrored = linear.determinant() < 0.0;
     if how.normals != Normals::Flat {
         if raw.normals.is_empty() && how.normals == Normals::Smooth {
             mesh.normals = smooth::vertex_normals(&mesh.positions, &mesh.triangles);
+            if is_mirrored {
+                mesh.normals.iter_mut().for_each(|n| *n = -*n);
+            }
         } else {
-            let linear = glam::DMat3::from_mat4(how.to_world);
-            // Cofactors replace the inverse: the direction agrees up to the determinant's sign, and nothing is divided
-            // by 0.
-            let sign = if linear.determinant() < 0.0 { -1.0 } else { 1.0 };
-            let cofactor = cofactor(&linear) * sign;
+            let to_normal = normal_matrix(&linear);
             let normals =
-                raw.normals.iter().map(|n| unit(cofactor * n.as_dvec3()).unwrap_or_default().as_vec3());
+                raw.normals.iter().map(|n| unit(to_normal * n.as_dvec3()).unwrap_or_default().as_vec3());
             mesh.normals = normals.collect();
         }
     }
+    let handedness = if is_mirrored != how.flip_normals { -1.0 } else { 1.0 };
+    let to_world = |t: &Vec4| {
+        let along = unit(linear * t.truncate().as_dvec3()).unwrap_or_default().as_vec3();
+        along.extend(t.w * handedness)
+    };
+    mesh.tangents = raw.tangents.iter().map(to_world).collect();
     if mesh.uvs.is_empty() && how.needs_uv {
         give_barycentric_uvs(&mut mesh);
     }
+    if is_mirrored != how.flip_normals {
+        mesh.triangles.iter_mut().for_each(|t| t.swap(1, 2));
+    }
     if how.flip_normals {
-        if mesh.normals.is_empty() {
-            mesh.triangles.iter_mut().for_each(|t| t.swap(1, 2));
-        }
         mesh.normals.iter_mut().for_each(|n| *n = -*n);
     }
     follow_normals(&mut mesh);
     mesh
 }
 
-fn cofactor(m: &glam::DMat3) -> glam::DMat3 {
-    glam::DMat3::from_cols(m.y_axis.cross(m.z_axis), m.z_axis.cross(m.x_axis), m.x_axis.cross(m.y_axis))
+/// Returns a multiple of the inverse transpose of `m`, which transforms normals; the outside stays outside.
+///
+/// Cofactors replace the inverse: the direction agrees up to the determinant's sign, and nothing is divided by 0.
+pub(crate) fn normal_matrix(m: &DMat3) -> DMat3 {
+    let sign = if m.determinant() < 0.0 { -1.0 } else { 1.0 };
+    DMat3::from_cols(m.y_axis.cross(m.z_axis), m.z_axis.cross(m.x_axis), m.x_axis.cross(m.y_axis)) * sign
 }
 
 /// Duplicates shared vertices, and gives each triangle (0,0), (1,0), (0,1) in Mitsuba's convention of v downwards.
@@ -109,7 +136,11 @@ fn give_barycentric_uvs(mesh: &mut DraftMesh) {
     if !mesh.normals.is_empty() {
         mesh.normals = corners().map(|i| mesh.normals[i]).collect();
     }
+    if !mesh.tangents.is_empty() {
+        mesh.tangents = corners().map(|i| mesh.tangents[i]).collect();
+    }
     mesh.positions = positions;
+    reorder(&mut mesh.attributes, mesh.triangles.as_flattened());
     let uvs = [Vec2::new(0.0, 1.0), Vec2::new(1.0, 1.0), Vec2::new(0.0, 0.0)];
     mesh.uvs = (0..mesh.triangles.len()).flat_map(|_| uvs).collect();
     mesh.triangles = (0..mesh.triangles.len() as u32).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();

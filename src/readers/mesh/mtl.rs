@@ -1,140 +1,270 @@
 //! Parser of Wavefront MTL, the classic materials of an OBJ file. The module `native::mtl` converts them.
 //!
+//! The extension for physically based rendering is that of exocortex, which Blender writes.
+//!
 //! Reason against `tobj` 4.0.5: a colour of one or two numbers makes its MTL reader panic, and its errors name no line.
 
-use super::obj;
+use super::mtl_statements::listed;
+use super::wavefront::{name, numbers, shown, split_word, statements, values, words};
 use crate::error::{Location, SceneError};
+use crate::statements::Fate;
 use base::math::Rgb;
-use glam::DVec3;
+use glam::{DMat3, DVec3};
+use std::collections::BTreeMap;
 use std::path::Path;
+
+/// A map statement: its text with options, and its line.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct MapText {
+    pub text: String,
+    pub line: u32,
+}
+
+/// A feature of a material that is not modelled.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Unmodelled {
+    pub what: String,
+    /// Replacement.
+    pub fallback: String,
+    pub line: u32,
+}
 
 /// A material (`newmtl`) with its statements.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct ClassicMaterial {
     pub name: String,
     pub place: Location,
+    /// Ka.
+    pub ambient: Option<Rgb>,
     /// Kd.
     pub diffuse: Rgb,
     /// Ks.
-    pub specular: Rgb,
+    pub specular: Option<Rgb>,
     /// Ke.
     pub emissive: Rgb,
+    /// Tf.
+    pub filter: Option<Rgb>,
     /// Ns.
     pub exponent: f32,
-    /// d, or 1 - Tr.
-    pub dissolve: f32,
+    /// d.
+    pub dissolve: Option<f32>,
+    /// Tr, and its line.
+    pub transparency: Option<(f32, u32)>,
     /// Ni.
     pub ior: Option<f32>,
-    /// illum.
+    /// illum, from 0 to 10.
     pub model: u32,
-    /// map_Kd, without its options.
-    pub diffuse_map: Option<String>,
-    /// map_Ke, without its options.
-    pub emissive_map: Option<String>,
-    /// map_d, without its options.
-    pub opacity_map: Option<String>,
-    /// Keywords of other maps.
-    pub other_maps: Vec<String>,
+    /// Numbers of the extension, by keyword.
+    pub principled: BTreeMap<&'static str, f32>,
+    /// Maps by keyword. `map_bump` is `bump`.
+    pub maps: BTreeMap<&'static str, MapText>,
+    pub unmodelled: Vec<Unmodelled>,
 }
 
 /// Reads the MTL text `bytes`; `path` is for messages.
 pub fn read(bytes: &[u8], path: &Path) -> Result<Vec<ClassicMaterial>, SceneError> {
     let mut materials: Vec<ClassicMaterial> = Vec::new();
-    for (number, line) in obj::lines(bytes).enumerate() {
-        let place = Location::line(path, number as u32 + 1);
-        let line = line.trim_ascii();
-        let word_end = line.iter().position(|b| b.is_ascii_whitespace()).unwrap_or(line.len());
-        let (word, rest) = line.split_at(word_end);
-        let text = String::from_utf8_lossy(rest).trim().to_owned();
-        if word == b"newmtl" {
-            materials.push(ClassicMaterial {
-                name: text,
-                place,
-                diffuse: Rgb::ZERO,
-                specular: Rgb::ZERO,
-                emissive: Rgb::ZERO,
-                exponent: 0.0,
-                dissolve: 1.0,
-                ior: None,
-                model: 2,
-                diffuse_map: None,
-                emissive_map: None,
-                opacity_map: None,
-                other_maps: Vec::new(),
-            });
+    for (line, statement) in statements(bytes) {
+        let place = Location::line(path, line);
+        let (word, rest) = split_word(&statement);
+        if word.is_empty() || word[0] == b'#' {
+            continue;
+        }
+        if word.eq_ignore_ascii_case(b"newmtl") {
+            materials.push(ClassicMaterial::new(name(rest), place));
         } else if let Some(material) = materials.last_mut() {
-            statement(material, word, rest, text).map_err(|what| SceneError::mesh(place, what))?;
+            material.read(word, rest, line).map_err(|what| SceneError::mesh(place, what))?;
         }
     }
     Ok(materials)
 }
 
-fn statement(material: &mut ClassicMaterial, word: &[u8], rest: &[u8], text: String) -> Result<(), String> {
-    let number = || finite::<1>(rest).map(|[v]| v as f32);
-    match word {
-        b"Kd" => material.diffuse = colour(rest)?,
-        b"Ks" => material.specular = colour(rest)?,
-        b"Ke" => material.emissive = colour(rest)?,
-        b"Ns" => material.exponent = number()?,
-        b"d" => material.dissolve = number()?,
-        b"Tr" => material.dissolve = 1.0 - number()?,
-        b"Ni" => material.ior = Some(number()?),
-        b"illum" => material.model = number()? as u32,
-        b"map_Kd" => material.diffuse_map = Some(file_name(text)),
-        b"map_Ke" => material.emissive_map = Some(file_name(text)),
-        b"map_d" => material.opacity_map = Some(file_name(text)),
-        b"map_Ks" | b"map_Ns" | b"map_bump" | b"map_Bump" | b"bump" | b"disp" | b"norm" => {
-            material.other_maps.push(String::from_utf8_lossy(word).into_owned());
+impl ClassicMaterial {
+    fn new(name: String, place: Location) -> ClassicMaterial {
+        ClassicMaterial {
+            name,
+            place,
+            ambient: None,
+            diffuse: Rgb::ZERO,
+            specular: None,
+            emissive: Rgb::ZERO,
+            filter: None,
+            exponent: 0.0,
+            dissolve: None,
+            transparency: None,
+            ior: None,
+            model: 2,
+            principled: BTreeMap::new(),
+            maps: BTreeMap::new(),
+            unmodelled: Vec::new(),
         }
-        _ => {}
     }
-    Ok(())
+
+    fn read(&mut self, word: &[u8], rest: &[u8], line: u32) -> Result<(), String> {
+        let Some(statement) = listed(&String::from_utf8_lossy(word)) else {
+            self.lacks(format!("the unknown statement \"{}\"", shown(word)), "it is left out", line);
+            return Ok(());
+        };
+        let number = || finite::<1>(rest).map(|[v]| v as f32);
+        match (statement.fate, statement.name) {
+            // The image of map_Ka decides.
+            (Fate::Named, keyword) if keyword != "map_Ka" => {
+                self.lacks(keyword.to_owned(), statement.note, line);
+            }
+            (_, "Kd") => self.diffuse = self.colour("Kd", rest, line)?,
+            (_, "Ks") => self.specular = Some(self.colour("Ks", rest, line)?),
+            (_, "Ke") => self.emissive = self.colour("Ke", rest, line)?,
+            (_, "Ka") => self.ambient = Some(self.colour("Ka", rest, line)?),
+            (_, "Tf") => self.filter = Some(self.colour("Tf", rest, line)?),
+            (_, "Ns") => self.exponent = number()?,
+            (_, "d") => {
+                let mut rest = rest;
+                if words(rest).next() == Some(b"-halo") {
+                    self.lacks("d -halo".to_owned(), "the opacity is the same from all sides", line);
+                    rest = split_word(rest.trim_ascii_start()).1;
+                }
+                self.dissolve = Some(finite::<1>(rest).map(|[v]| v as f32)?);
+            }
+            (_, "Tr") => self.transparency = Some((number()?, line)),
+            (_, "Ni") => self.ior = Some(number()?),
+            (_, "illum") => self.illumination(number()?, line),
+            (_, keyword @ ("Pr" | "Pm" | "Ps" | "Pc" | "Pcr" | "aniso" | "anisor")) => {
+                self.principled.insert(keyword, number()?);
+            }
+            (_, keyword) if keyword.starts_with("map_") || matches!(keyword, "norm" | "bump") => {
+                let keyword = if keyword == "map_bump" { "bump" } else { keyword };
+                let text = String::from_utf8_lossy(rest).trim().to_owned();
+                if !name(rest).is_empty() {
+                    self.maps.insert(keyword, MapText { text, line });
+                }
+            }
+            _ => {}
+        }
+        Ok(())
+    }
+
+    /// Returns the opacity: d, or 1 - Tr where there is no d, whichever comes first.
+    pub fn opacity(&self) -> f32 {
+        self.dissolve.or(self.transparency.map(|(share, _)| 1.0 - share)).unwrap_or(1.0)
+    }
+
+    /// Adds a feature that is not modelled.
+    pub fn lacks(&mut self, what: String, fallback: &str, line: u32) {
+        self.unmodelled.push(Unmodelled { what, fallback: fallback.to_owned(), line });
+    }
+
+    fn illumination(&mut self, number: f32, line: u32) {
+        self.model = if (0.0..=10.0).contains(&number) && number.fract() == 0.0 { number as u32 } else { 2 };
+        match number {
+            0.0 => self.lacks("illum 0, a colour without light".to_owned(), "the surface is matte", line),
+            10.0 => self.lacks("illum 10, shadows without a surface".to_owned(), "it is as illum 2", line),
+            _ if self.model as f32 != number => {
+                self.lacks(format!("illum {number}"), "it is as illum 2", line);
+            }
+            _ => {}
+        }
+    }
+
+    /// Parses three numbers, one number as a grey, or a colour by CIE XYZ.
+    fn colour(&mut self, keyword: &str, rest: &[u8], line: u32) -> Result<Rgb, String> {
+        match values(rest).next() {
+            Some(b"spectral") => {
+                self.lacks(format!("{keyword} by a spectrum"), "a grey of 0.5 stands in", line);
+                return Ok(Rgb::splat(0.5));
+            }
+            Some(b"xyz") => {
+                let xyz = finite::<3>(split_word(rest.trim_ascii_start()).1)?;
+                return Ok((RGB_OF_XYZ * DVec3::from(xyz)).as_vec3().max(Rgb::ZERO));
+            }
+            _ => {}
+        }
+        let three = finite::<3>(rest).map(|c| DVec3::from(c).as_vec3());
+        three.or_else(|e| match values(rest).count() {
+            1 => finite::<1>(rest).map(|[v]| Rgb::splat(v as f32)),
+            _ => Err(e),
+        })
+    }
 }
 
-/// Returns the file name of a map. Options come before the name; without options the name may contain spaces.
-fn file_name(text: String) -> String {
-    let last = text.split_whitespace().last().unwrap_or_default().to_owned();
-    if text.starts_with('-') { last } else { text }
-}
+/// Linear Rec. 709 from CIE XYZ (IEC 61966-2-1).
+const RGB_OF_XYZ: DMat3 = DMat3::from_cols_array(&[
+    3.2406, -0.9689, 0.0557, //
+    -1.5372, 1.8758, -0.2040, //
+    -0.4986, 0.0415, 1.0570,
+]);
 
 /// Parses the first `N` numbers of a line.
 fn finite<const N: usize>(rest: &[u8]) -> Result<[f64; N], String> {
-    let numbers = obj::numbers(rest)?;
+    let numbers = numbers(rest)?;
     match numbers.iter().find(|number| !(**number as f32).is_finite()) {
         Some(number) => Err(format!("the number {number} is not finite")),
         None => Ok(numbers),
     }
 }
 
-/// Parses three numbers, or one number as a grey.
-fn colour(rest: &[u8]) -> Result<Rgb, String> {
-    let three = finite::<3>(rest).map(|c| DVec3::from(c).as_vec3());
-    three.or_else(|e| match rest.split(|b| b.is_ascii_whitespace()).filter(|t| !t.is_empty()).count() {
-        1 => finite::<1>(rest).map(|[v]| Rgb::splat(v as f32)),
-        _ => Err(e),
-    })
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
+    fn read_text(text: &str) -> Vec<ClassicMaterial> {
+        read(text.as_bytes(), Path::new("t.mtl")).unwrap()
+    }
+
     #[test]
     fn statements_are_read_and_errors_name_their_line() {
-        let text = b"# made by hand\nnewmtl a b\nKd 0.1 0.2 0.3\r\nKs 0.5\nTr 0.25\nNs 10\nNi 1.4\nillum 7\n\
-            map_Kd -s 2 2 1 wood.png\nmap_bump x.png\nnewmtl c\nmap_Kd my wood.png\n";
-        let [a, c] = &read(text, Path::new("t.mtl")).unwrap()[..] else { panic!() };
+        let text = "# made by hand\nnewmtl a b # oak\nKd 0.1 0.2 \\\n 0.3\r\nKs 0.5 # grey\nTr 0.25\nNs 10\nNi 1.4\n\
+            illum 7\nmap_Kd -s 2 2 1 wood.png # x\nmap_Bump x.png\nPr 0.3\nnewmtl c\nmap_kd my wood.png\nmap_d\n\
+            map_Ke # none\nKd xyz 0.9505 1 1.089\n";
+        let [a, c] = &read_text(text)[..] else { panic!() };
         assert_eq!(
             (a.name.as_str(), a.diffuse, a.specular),
-            ("a b", Rgb::new(0.1, 0.2, 0.3), Rgb::splat(0.5))
+            ("a b", Rgb::new(0.1, 0.2, 0.3), Some(Rgb::splat(0.5)))
         );
-        assert_eq!((a.dissolve, a.exponent, a.ior, a.model), (0.75, 10.0, Some(1.4), 7));
-        assert_eq!((a.diffuse_map.as_deref(), a.other_maps.len()), (Some("wood.png"), 1));
-        assert_eq!(c.diffuse_map.as_deref(), Some("my wood.png"));
-        for bad in ["Kd 0.1 0.2", "Kd a b c", "Ns", "d x", "Ks nan", "d nan", "Ni inf", "Ke 1 2 1e39"] {
+        assert_eq!((a.opacity(), a.exponent, a.ior, a.model), (0.75, 10.0, Some(1.4), 7));
+        assert_eq!(a.maps["map_Kd"], MapText { text: "-s 2 2 1 wood.png # x".to_owned(), line: 10 });
+        assert_eq!((a.maps["bump"].line, a.principled["Pr"], a.unmodelled.len()), (11, 0.3, 0));
+        assert_eq!((c.maps.len(), c.maps["map_Kd"].text.as_str()), (1, "my wood.png"));
+        assert!((c.diffuse - Rgb::ONE).abs().max_element() < 1e-3, "{}", c.diffuse);
+        for bad in ["Kd 0.1 0.2", "Kd a b c", "Ns", "d x", "Ks nan", "d nan", "Ni inf", "Ke 1 2 1e39", "Pr x"]
+        {
             let message =
                 read(format!("newmtl a\n{bad}\n").as_bytes(), Path::new("t.mtl")).unwrap_err().to_string();
             assert!(message.starts_with("t.mtl:2:"), "{message}");
+        }
+    }
+
+    #[test]
+    fn d_counts_before_tr_whichever_comes_first() {
+        let opacity = |text: &str| read_text(&format!("newmtl a\n{text}\n"))[0].opacity();
+        for (text, expected) in [
+            ("d 1\nTr 1", 1.0),
+            ("Tr 1\nd 0.5", 0.5),
+            ("Tr 0.75", 0.25),
+            ("d 0.5", 0.5),
+            ("d -halo 0.5", 0.5),
+        ] {
+            assert_eq!(opacity(text), expected, "{text}");
+        }
+    }
+
+    #[test]
+    fn statements_and_illuminations_that_are_not_modelled_are_named() {
+        let named = |text: &str| -> Vec<String> {
+            let of = |u: Unmodelled| format!("{}: {}", u.line, u.what);
+            read_text(&format!("newmtl a\n{text}\n")).remove(0).unmodelled.into_iter().map(of).collect()
+        };
+        for statement in super::super::mtl_statements::MTL {
+            let said = named(&format!("{} 0.5", statement.name));
+            let is_named = statement.fate == Fate::Named && statement.name != "map_Ka";
+            let expected = if is_named { vec![format!("2: {}", statement.name)] } else { vec![] };
+            let expected = if statement.name == "illum" { vec!["2: illum 0.5".to_owned()] } else { expected };
+            assert_eq!(said, expected, "{}", statement.name);
+        }
+        assert_eq!(named("Km 0.3"), ["2: the unknown statement \"Km\""]);
+        assert_eq!(named("Kd spectral a.rfl 1"), ["2: Kd by a spectrum"]);
+        assert_eq!(named("d -halo 0.5"), ["2: d -halo"]);
+        for illum in -1..13 {
+            assert_eq!(named(&format!("illum {illum}")).is_empty(), (1..10).contains(&illum), "{illum}");
         }
     }
 }

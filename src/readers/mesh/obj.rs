@@ -1,7 +1,9 @@
 //! Reader of Wavefront OBJ: positions, texture coordinates, normals, polygons and material groups of selected objects.
 //!
-//! A vertex is a distinct triple of indices (position, uv, normal), numbered by first use. Lines, points, curves and
-//! smoothing groups are ignored.
+//! Six numbers after `v` are a position and a colour, coded in sRGB as Blender and MeshLab write it. A seventh is an
+//! opacity, which is not read. A fourth alone is a weight.
+//!
+//! A vertex is a distinct triple of indices (position, uv, normal), numbered by first use.
 //!
 //! Deviations: convex polygons are fans, as in Mitsuba. `polygon` triangulates other polygons.
 //!
@@ -12,55 +14,64 @@
 //! - A face of two corners is no error.
 //! - It splits the mesh at `o`, `g` and `usemtl`, so vertices are no longer shared and smooth normals change.
 
+use super::obj_statements::Unread;
+use super::wavefront::{name, numbers, split_word, statements, values};
 use super::{RawMesh, polygon};
-use crate::error::{Location, SceneError};
+use crate::attributes::{NamedAttribute, VERTEX_COLOUR};
+use crate::decode::srgb_to_linear;
+use crate::error::{Location, SceneError, Warning};
 use crate::selection::PartSelection;
+use base::math::Rgb;
 use glam::{DVec3, Vec2, Vec3};
-use std::collections::{BTreeSet, HashMap};
+use std::collections::HashMap;
 use std::path::Path;
 
 const MISSING: u32 = u32::MAX;
 /// Number of vertices per position from which a hash map finds them.
 const MAX_CHAIN: usize = 16;
 
-/// Reads the selected part of the OBJ text `bytes`; `path` is for messages.
-pub fn read(bytes: &[u8], path: &Path, selection: &PartSelection) -> Result<RawMesh, SceneError> {
+/// Reads the selected part of the OBJ text `bytes`; `path` is for messages. `remarks` gets a warning for each keyword
+/// that is not modelled.
+pub fn read(
+    bytes: &[u8],
+    path: &Path,
+    selection: &PartSelection,
+    remarks: &mut Vec<Warning>,
+) -> Result<RawMesh, SceneError> {
     let mut reader = Reader { selected: selection.only.is_empty(), ..Reader::default() };
     // Estimates for 30 bytes per line. They affect the speed only.
     reader.positions.reserve(bytes.len() / 100);
     reader.mesh.triangles.reserve(bytes.len() / 60);
-    for (number, line) in lines(bytes).enumerate() {
-        let fail = |what: String| SceneError::mesh(Location::line(path, number as u32 + 1), what);
-        reader.line(line, selection).map_err(fail)?;
+    for (line, statement) in statements(bytes) {
+        let fail = |what: String| SceneError::mesh(Location::line(path, line), what);
+        reader.statement(&statement, line, selection).map_err(fail)?;
     }
     if reader.mesh.triangles.is_empty() && !selection.only.is_empty() {
         return Err(Location::file(path).undefined("object or group", &selection.only.join("\", \"")));
     }
+    let (has_faces, has_normals) = (!reader.mesh.triangles.is_empty(), !reader.normals.is_empty());
+    reader.unread.report(path, has_faces, has_normals, remarks);
     Ok(reader.finish())
 }
 
-/// Returns the lines of a text without its byte-order mark. Lines end as on Unix, Windows or old Macintoshes.
-pub(super) fn lines(bytes: &[u8]) -> impl Iterator<Item = &[u8]> {
-    let bytes = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes);
-    let end = if bytes.contains(&b'\n') { b'\n' } else { b'\r' };
-    bytes.split(move |&b| b == end)
+/// Returns true if a position in the OBJ text `bytes` has a colour.
+pub(crate) fn has_colours(bytes: &[u8]) -> bool {
+    statements(bytes).any(|(_, statement)| {
+        let (word, rest) = split_word(&statement);
+        word == b"v" && is_coloured(rest)
+    })
 }
 
-/// Returns the `mtllib` names of the OBJ text `bytes`, in order.
-pub(crate) fn material_libraries(bytes: &[u8]) -> Vec<String> {
-    let lines = lines(bytes).filter(|l| l.starts_with(b"mtllib"));
-    lines.map(|l| String::from_utf8_lossy(&l[6..]).trim().to_owned()).filter(|n| !n.is_empty()).collect()
-}
-
-/// Returns the names of the materials that the faces of the OBJ text `bytes` use.
-pub(crate) fn used_materials(bytes: &[u8]) -> BTreeSet<String> {
-    let lines = lines(bytes).filter_map(|line| line.trim_ascii().strip_prefix(b"usemtl"));
-    lines.map(|name| String::from_utf8_lossy(name).trim().to_owned()).collect()
+/// Returns true if the numbers of a position have a colour after them.
+fn is_coloured(rest: &[u8]) -> bool {
+    values(rest).count() >= 6
 }
 
 #[derive(Default)]
 struct Reader {
     positions: Vec<DVec3>,
+    /// Colours of the positions up to the last one that has a colour.
+    colours: Vec<Rgb>,
     uvs: Vec<Vec2>,
     normals: Vec<Vec3>,
     /// First vertex of each position. `next` chains the others, which is faster than a hash map for typical files.
@@ -76,6 +87,7 @@ struct Reader {
     groups: Vec<String>,
     /// True if the selection contains the current object or groups.
     selected: bool,
+    unread: Unread,
 }
 
 struct ObjVertex {
@@ -86,35 +98,43 @@ struct ObjVertex {
 }
 
 impl Reader {
-    fn line(&mut self, line: &[u8], selection: &PartSelection) -> Result<(), String> {
-        let line = line.trim_ascii();
-        let word_end = line.iter().position(|b| b.is_ascii_whitespace()).unwrap_or(line.len());
-        let (word, rest) = line.split_at(word_end);
+    fn statement(&mut self, statement: &[u8], line: u32, selection: &PartSelection) -> Result<(), String> {
+        let (word, rest) = split_word(statement);
         match word {
-            b"v" => self.positions.push(DVec3::from(numbers(rest)?)),
+            b"v" => self.position(rest)?,
             b"vn" => self.normals.push(DVec3::from(numbers(rest)?).as_vec3()),
             b"vt" => {
                 // The second coordinate may be left out (1-D textures).
                 let [u, v] =
                     numbers(rest).or_else(|e| numbers::<1>(rest).map(|[u]| [u, 0.0]).map_err(|_| e))?;
-                self.uvs.push(Vec2::new(u as f32, v as f32));
+                // NaN stands for a corner without coordinates.
+                self.uvs
+                    .push(Vec2::new(u as f32, v as f32).map(|x| if x.is_nan() { f32::INFINITY } else { x }));
             }
-            b"f" => self.face(rest)?,
-            b"usemtl" => {
-                let name = String::from_utf8_lossy(rest).trim().to_owned();
-                self.mesh.groups.push((name, self.mesh.triangles.len()));
-            }
+            b"f" | b"fo" => self.face(rest)?,
+            b"usemtl" => self.mesh.groups.push((name(rest), self.mesh.triangles.len())),
             b"o" => {
-                self.object = String::from_utf8_lossy(rest).trim().to_owned();
+                self.object = name(rest);
                 self.select(selection);
             }
             b"g" => {
-                let names = String::from_utf8_lossy(rest);
-                self.groups = names.split_whitespace().map(str::to_owned).collect();
+                self.groups = name(rest).split_whitespace().map(str::to_owned).collect();
                 self.select(selection);
             }
-            _ => {}
+            _ => self.unread.add(word, rest, line),
         }
+        Ok(())
+    }
+
+    /// Reads a position, and the colour after it if there are six numbers or more.
+    fn position(&mut self, rest: &[u8]) -> Result<(), String> {
+        let [x, y, z] = numbers(rest)?;
+        if is_coloured(rest) {
+            let [.., r, g, b] = numbers::<6>(rest)?;
+            self.colours.resize(self.positions.len(), Rgb::ONE);
+            self.colours.push(Rgb::from([r, g, b].map(|code| srgb_to_linear(code as f32))));
+        }
+        self.positions.push(DVec3::new(x, y, z));
         Ok(())
     }
 
@@ -126,7 +146,7 @@ impl Reader {
     fn face(&mut self, rest: &[u8]) -> Result<(), String> {
         let mut corners = std::mem::take(&mut self.corners);
         corners.clear();
-        for token in rest.split(|b| b.is_ascii_whitespace()).filter(|t| !t.is_empty()) {
+        for token in values(rest) {
             let mut parts = token.split(|&b| b == b'/');
             let position = index(parts.next(), self.positions.len(), "vertex")?;
             if position == MISSING {
@@ -173,76 +193,24 @@ impl Reader {
     }
 
     fn finish(self) -> RawMesh {
-        let Reader { positions, uvs, normals, vertices, mut mesh, .. } = self;
+        let Reader { positions, colours, uvs, normals, vertices, mut mesh, .. } = self;
         mesh.positions = vertices.iter().map(|v| positions[v.position as usize]).collect();
         if vertices.iter().any(|v| v.uv != MISSING) {
-            mesh.uvs = vertices.iter().map(|v| uvs.get(v.uv as usize).copied().unwrap_or_default()).collect();
+            let uv = |v: &ObjVertex| uvs.get(v.uv as usize).copied().unwrap_or(Vec2::NAN);
+            mesh.uvs = vertices.iter().map(uv).collect();
         }
         if !normals.is_empty() {
             // A corner without a normal gets zero, which is later replaced by the geometric normal.
             let normal = |v: &ObjVertex| normals.get(v.normal as usize).copied().unwrap_or_default();
             mesh.normals = vertices.iter().map(normal).collect();
         }
+        if !colours.is_empty() {
+            let colour = |v: &ObjVertex| colours.get(v.position as usize).copied().unwrap_or(Rgb::ONE);
+            let colours = vertices.iter().map(colour).collect();
+            mesh.attributes.push(NamedAttribute::of_vertices(VERTEX_COLOUR, colours));
+        }
         mesh
     }
-}
-
-/// Splits the mesh at its material groups, by first use. The name before the first `usemtl` is empty.
-pub(crate) fn split_by_material(raw: RawMesh) -> Vec<(String, RawMesh)> {
-    let mut names: Vec<String> = Vec::new();
-    let mut of_name: HashMap<String, usize> = HashMap::new();
-    let mut parts: Vec<Vec<[u32; 3]>> = Vec::new();
-    let mut groups = raw.groups.clone();
-    groups.insert(0, (String::new(), 0));
-    for (g, (name, start)) in groups.iter().enumerate() {
-        let end = groups.get(g + 1).map_or(raw.triangles.len(), |next| next.1);
-        if *start == end {
-            continue;
-        }
-        let part = *of_name.entry(name.clone()).or_insert_with(|| {
-            names.push(name.clone());
-            parts.push(Vec::new());
-            names.len() - 1
-        });
-        parts[part].extend_from_slice(&raw.triangles[*start..end]);
-    }
-    names
-        .into_iter()
-        .zip(parts)
-        .map(|(name, triangles)| (name, with_used_vertices(&raw, triangles)))
-        .collect()
-}
-
-/// Returns the mesh of `triangles` with the vertices of `raw` that they use. The reader guarantees that indices are in
-/// range.
-fn with_used_vertices(raw: &RawMesh, mut triangles: Vec<[u32; 3]>) -> RawMesh {
-    let mut renumbered = vec![MISSING; raw.positions.len()];
-    let mut part = RawMesh::default();
-    for i in triangles.iter_mut().flatten() {
-        let old = *i as usize;
-        if renumbered[old] == MISSING {
-            renumbered[old] = part.positions.len() as u32;
-            part.positions.push(raw.positions[old]);
-            part.uvs.extend(raw.uvs.get(old));
-            part.normals.extend(raw.normals.get(old));
-        }
-        *i = renumbered[old];
-    }
-    part.triangles = triangles;
-    part
-}
-
-/// Parses the first `N` numbers of a line. Further ones (w, vertex colours) are ignored.
-pub(super) fn numbers<const N: usize>(rest: &[u8]) -> Result<[f64; N], String> {
-    let mut values = [0.0; N];
-    let mut tokens = rest.split(|b| b.is_ascii_whitespace()).filter(|t| !t.is_empty());
-    for value in &mut values {
-        let token = tokens.next().ok_or_else(|| format!("expected {N} numbers"))?;
-        let text = std::str::from_utf8(token).ok();
-        let bad = || format!("cannot read the number \"{}\"", String::from_utf8_lossy(token));
-        *value = text.and_then(|t| t.parse().ok()).ok_or_else(bad)?;
-    }
-    Ok(values)
 }
 
 /// Parses a one-based index, or one that counts back from the latest if negative; `MISSING` for an empty one.
@@ -263,7 +231,8 @@ mod tests {
     use super::*;
 
     fn read_text(text: &str) -> Result<RawMesh, String> {
-        read(text.as_bytes(), Path::new("t.obj"), &PartSelection::default()).map_err(|e| e.to_string())
+        read(text.as_bytes(), Path::new("t.obj"), &PartSelection::default(), &mut Vec::new())
+            .map_err(|e| e.to_string())
     }
 
     #[test]
@@ -283,7 +252,8 @@ mod tests {
         let names = |names: &[&str]| names.iter().map(|name| name.to_string()).collect();
         let count = |only: &[&str], except: &[&str]| {
             let selection = PartSelection { only: names(only), except: names(except) };
-            read(text.as_bytes(), Path::new("t.obj"), &selection).map(|mesh| mesh.triangles.len())
+            read(text.as_bytes(), Path::new("t.obj"), &selection, &mut Vec::new())
+                .map(|mesh| mesh.triangles.len())
         };
         assert_eq!(count(&[], &[]).unwrap(), 4);
         assert_eq!(count(&["lamp"], &[]).unwrap(), 2);
@@ -317,6 +287,20 @@ mod tests {
     }
 
     #[test]
+    fn statements_may_be_continued_and_have_comments_behind_them() {
+        let text = "v 0 0 0 # first\nv 1 0 \\\n 0\nv 0 1 0#third\nvt 0 0 # corner\n# never joined \\\n\
+            usemtl dark oak # wood\ng wall # a group\nf 1/1 2/1 \\\n\t3/1 # whole\nfo 3 2 1\n";
+        for end in ["\n", "\r\n"] {
+            let mesh = read_text(&text.replace('\n', end)).unwrap();
+            assert_eq!(mesh.triangles, [[0, 1, 2], [3, 4, 5]]);
+            assert_eq!(mesh.groups, [("dark oak".to_owned(), 0)]);
+            assert!(mesh.uvs[..3].iter().all(|uv| *uv == Vec2::ZERO) && mesh.uvs[3].is_nan());
+        }
+        let message = read_text("v 0 0 \\\n 0\n\nf 1 \\\n 2 3 # far\n").unwrap_err();
+        assert!(message.contains("t.obj:4:") && message.contains("vertex 2"), "{message}");
+    }
+
+    #[test]
     fn vertices_defined_after_a_face_and_never_used_are_no_trouble() {
         let text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nv 5 5 5\nv 0 0 1\r\n  f 1 2 5\t\r\n";
         let mesh = read_text(text).unwrap();
@@ -338,15 +322,5 @@ mod tests {
             let message = read_text(text).unwrap_err();
             assert!(message.contains(&format!("t.obj:{line}:")) && message.contains(what), "{message}");
         }
-    }
-
-    #[test]
-    fn material_groups_split_the_mesh_and_share_nothing() {
-        let text = "mtllib a b.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nusemtl x\nf 1 2 4\nusemtl y\nusemtl x\nf 2 3 4\n";
-        assert_eq!(material_libraries(text.as_bytes()), ["a b.mtl"]);
-        let parts = split_by_material(read_text(text).unwrap());
-        let names: Vec<_> =
-            parts.iter().map(|p| (p.0.as_str(), p.1.triangles.len(), p.1.positions.len())).collect();
-        assert_eq!(names, [("", 1, 3), ("x", 2, 4)]);
     }
 }

@@ -1,22 +1,26 @@
 //! Reader of PLY meshes, ASCII and binary of either byte order.
 //!
 //! Vertices have optional normals and texture coordinates. Faces have any number of corners; `polygon` triangulates
-//! them. Other elements and properties are ignored.
+//! them. Colours and other attributes of both are those that `ply_attributes` finds. Other elements and properties are
+//! named (see `ply_statements`).
 //!
 //! Reasons against `ply-rs-bw` 4.0.1:
 //! - Reading ends at bytes that are not UTF-8, at blank lines, and at ASCII elements over several lines.
 //! - Each face is a list of its own in memory.
 //! - Messages have three lines.
 
-use super::{RawMesh, polygon};
-use crate::error::{Location, SceneError};
+use super::ply_attributes::{self, Channel, CollectedAttributes, PlyAttribute, max_of_type};
+use super::{RawMesh, ply_statements, polygon};
+use crate::error::{Location, SceneError, Warning};
 use glam::{DVec3, Vec2, Vec3};
+use scene::AttributeValues;
 use std::path::Path;
 
-/// Reads the PLY file `bytes`; `path` is for messages.
-pub fn read(bytes: &[u8], path: &Path) -> Result<RawMesh, SceneError> {
+/// Reads the PLY file `bytes`; `path` is for messages. Names in `remarks` what is not read.
+pub fn read(bytes: &[u8], path: &Path, remarks: &mut Vec<Warning>) -> Result<RawMesh, SceneError> {
     let (header, body) =
         header(bytes).map_err(|(line, what)| SceneError::mesh(Location::line(path, line), what))?;
+    remarks.extend(ply_statements::unread(&bytes[..bytes.len() - body.len()], path));
     let mut values: Box<dyn PlyValues> = match header.format {
         Format::Ascii => Box::new(Ascii { rest: body, line: header.lines }),
         Format::LittleEndian => Box::new(Binary { rest: body, big_endian: false }),
@@ -59,6 +63,26 @@ struct PlyProperty {
     /// Type of the count, for lists.
     list: Option<Scalar>,
     scalar: Scalar,
+    /// Maximum of the type, if the type is an integer.
+    max: Option<f64>,
+}
+
+impl Element {
+    /// Returns the attributes among the properties. `prefix` is that of their names.
+    fn attributes(&self, prefix: &str) -> Vec<PlyAttribute> {
+        let mut channels = Vec::with_capacity(self.properties.len());
+        for PlyProperty { name, list, max, .. } in &self.properties {
+            channels.push(list.is_none().then_some(Channel { name, max: *max }));
+        }
+        ply_attributes::attributes(prefix, &channels)
+    }
+}
+
+/// Returns true if the PLY file `bytes` has colours of vertices or faces.
+pub(crate) fn has_colours(bytes: &[u8]) -> bool {
+    let Ok((header, _)) = header(bytes) else { return false };
+    let has = |element: &Element| element.attributes("").iter().any(|attribute| attribute.name == "color");
+    header.elements.iter().any(|element| matches!(element.name.as_str(), "vertex" | "face") && has(element))
 }
 
 /// Parses the header; returns it and the bytes after it, or an error with its line.
@@ -93,9 +117,9 @@ fn header(bytes: &[u8]) -> Result<(Header, &[u8]), (u32, String)> {
                 header.elements.push(Element { name: name.into(), count, properties: Vec::new() });
             }
             ["property", ref kind @ .., name] => {
-                let (list, scalar) = match kind[..] {
-                    ["list", count, scalar] => (Some(self::scalar(count)), self::scalar(scalar)),
-                    [one] => (None, self::scalar(one)),
+                let (list, scalar, max) = match kind[..] {
+                    ["list", count, scalar] => (Some(self::scalar(count)), self::scalar(scalar), None),
+                    [one] => (None, self::scalar(one), max_of_type(one)),
                     _ => return fail("cannot read the property"),
                 };
                 let (Some(element), Some(scalar)) = (header.elements.last_mut(), scalar) else {
@@ -106,7 +130,7 @@ fn header(bytes: &[u8]) -> Result<(Header, &[u8]), (u32, String)> {
                     Some(count) => count,
                     None => None,
                 };
-                element.properties.push(PlyProperty { name: name.into(), list, scalar });
+                element.properties.push(PlyProperty { name: name.into(), list, scalar, max });
             }
             ["end_header"] => break,
             _ => return fail("unknown line in the header"),
@@ -259,6 +283,7 @@ fn vertices(element: &Element, values: &mut dyn PlyValues, mesh: &mut RawMesh) -
     let uv = [["u", "s", "texture_u"], ["v", "t", "texture_v"]].map(|names| find(&names));
     mesh.positions.reserve_exact(expected(element, values));
     let mut row = vec![0.0; element.properties.len()];
+    let mut attributes = CollectedAttributes::new(element.attributes("vertex_"));
     for _ in 0..element.count {
         for (value, property) in row.iter_mut().zip(&element.properties) {
             property_values(property, values, |v| *value = v)?;
@@ -270,7 +295,9 @@ fn vertices(element: &Element, values: &mut dyn PlyValues, mesh: &mut RawMesh) -
         if let [Some(u), Some(v)] = uv {
             mesh.uvs.push(Vec2::new(row[u] as f32, row[v] as f32));
         }
+        attributes.push(&row, 1);
     }
+    mesh.attributes.extend(attributes.finish(AttributeValues::Vertices));
     Ok(())
 }
 
@@ -282,10 +309,13 @@ fn faces(element: &Element, values: &mut dyn PlyValues, mesh: &mut RawMesh) -> R
     }
     mesh.triangles.reserve(expected(element, values));
     let mut corners = Vec::new();
+    let mut row = vec![0.0; element.properties.len()];
+    let mut attributes = CollectedAttributes::new(element.attributes("face_"));
     for _ in 0..element.count {
-        for property in &element.properties {
+        let before = mesh.triangles.len();
+        for (value, property) in row.iter_mut().zip(&element.properties) {
             if !is_corners(property) {
-                property_values(property, values, |_| ())?;
+                property_values(property, values, |v| *value = v)?;
                 continue;
             }
             corners.clear();
@@ -300,13 +330,19 @@ fn faces(element: &Element, values: &mut dyn PlyValues, mesh: &mut RawMesh) -> R
             let position = |&corner: &u32| positions.get(corner as usize).copied().unwrap_or_default();
             polygon::cut(&corners, position, &mut mesh.triangles);
         }
+        attributes.push(&row, mesh.triangles.len() - before);
     }
+    mesh.attributes.extend(attributes.finish(AttributeValues::Triangles));
     Ok(())
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    fn read(bytes: &[u8], path: &Path) -> Result<RawMesh, SceneError> {
+        super::read(bytes, path, &mut Vec::new())
+    }
 
     const HEADER: &str = "ply\nformat FORMAT 1.0\ncomment made here\nelement vertex 4\nproperty float x\n\
         property float y\nproperty double z\nproperty float s\nproperty float t\nelement extra 1\n\

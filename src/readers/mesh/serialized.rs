@@ -1,7 +1,9 @@
 //! Reader of Mitsuba's `.serialized` meshes, file versions 3 and 4: deflated blocks and a table of their offsets.
 
 use super::RawMesh;
-use crate::error::{Location, SceneError};
+use crate::attributes::{NamedAttribute, VERTEX_COLOUR};
+use crate::error::{Location, SceneError, Warning};
+use crate::statements::{Fate, Statement, fate};
 use flate2::read::ZlibDecoder;
 use glam::{DVec3, Vec2};
 use std::io::Read;
@@ -12,16 +14,45 @@ const HAS_NORMALS: u32 = 0x0001;
 const HAS_UVS: u32 = 0x0002;
 const HAS_COLOURS: u32 = 0x0008;
 const DOUBLE: u32 = 0x2000;
+
+/// Flags of a mesh.
+const FLAGS: &[Statement] = &[
+    Statement { name: "0x0001", fate: Fate::Read, note: "normals of vertices" },
+    Statement { name: "0x0002", fate: Fate::Read, note: "texture coordinates of vertices" },
+    Statement { name: "0x0004", fate: Fate::Named, note: "tangents, of which a file has no data" },
+    Statement { name: "0x0008", fate: Fate::Read, note: "colours of vertices, the attribute `vertex_color`" },
+    Statement {
+        name: "0x0010",
+        fate: Fate::Named,
+        note: "normals of faces; the shape's `face_normals` decides",
+    },
+    Statement { name: "0x1000", fate: Fate::Read, note: "single precision, the default" },
+    Statement { name: "0x2000", fate: Fate::Read, note: "double precision" },
+];
+
 /// Maximum number of bytes of a mesh's name.
 const MAX_NAME: usize = 1 << 16;
 
-/// Reads mesh number `index` of the file `bytes`; `path` is for messages.
-pub fn read(bytes: &[u8], index: usize, path: &Path) -> Result<RawMesh, SceneError> {
+/// Reads mesh number `index` of the file `bytes`; `path` is for messages. Names in `remarks` what is not read.
+pub fn read(
+    bytes: &[u8],
+    index: usize,
+    path: &Path,
+    remarks: &mut Vec<Warning>,
+) -> Result<RawMesh, SceneError> {
     let fail = |what: String| SceneError::mesh(Location::file(path), format!("mesh {index}: {what}"));
-    read_block(bytes, index).map_err(fail)
+    let (mesh, flags) = read_block(bytes, index).map_err(fail)?;
+    let bits = (0..u32::BITS).map(|bit| 1 << bit).filter(|bit| flags & bit != 0);
+    for name in bits.map(|bit| format!("0x{bit:04x}")).filter(|name| fate(FLAGS, name) == Fate::Named) {
+        let note = FLAGS.iter().find(|flag| flag.name == name).map_or("it is left out", |flag| flag.note);
+        let what = format!("mesh {index}: the flag {name} is not read");
+        remarks.push(Warning::new(Location::file(path), what, note));
+    }
+    Ok(mesh)
 }
 
-fn read_block(bytes: &[u8], index: usize) -> Result<RawMesh, String> {
+/// Reads a mesh; returns it with its flags.
+fn read_block(bytes: &[u8], index: usize) -> Result<(RawMesh, u32), String> {
     let magic = array(bytes, 0).map(u16::from_le_bytes);
     let version = array(bytes, 2).map(u16::from_le_bytes);
     if magic != Some(MAGIC) {
@@ -51,7 +82,9 @@ fn read_block(bytes: &[u8], index: usize) -> Result<RawMesh, String> {
         mesh.uvs = uvs.as_chunks::<2>().0.iter().map(|&[u, v]| Vec2::new(u as f32, v as f32)).collect();
     }
     if flags & HAS_COLOURS != 0 {
-        stream.floats(vertex_count, 3, doubles)?;
+        let colours = stream.floats(vertex_count, 3, doubles)?;
+        let colours = colours.as_chunks::<3>().0.iter().map(|&c| DVec3::from(c).as_vec3()).collect();
+        mesh.attributes.push(NamedAttribute::of_vertices(VERTEX_COLOUR, colours));
     }
     let indices = stream.bytes(triangle_count, 12)?;
     let index_of = |t: &[u8; 12], k: usize| array(t, 4 * k).map_or(u32::MAX, u32::from_le_bytes);
@@ -60,7 +93,7 @@ fn read_block(bytes: &[u8], index: usize) -> Result<RawMesh, String> {
     if let Some(bad) = mesh.triangles.iter().flatten().find(|&&i| u64::from(i) >= vertex_count) {
         return Err(format!("a triangle uses vertex {bad} of {vertex_count}"));
     }
-    Ok(mesh)
+    Ok((mesh, flags))
 }
 
 /// Returns the offset of block `index`, from the table at the file's end.
@@ -145,12 +178,39 @@ mod tests {
     use std::io::Write;
 
     #[test]
+    fn the_page_lists_these_flags_and_each_is_read_or_named() {
+        crate::statements::assert_page_lists("Serialized meshes of Mitsuba", FLAGS);
+        for flag in FLAGS.iter().map(|flag| flag.name).chain(["0x0100", "0x80000000"]) {
+            let bit = u32::from_str_radix(&flag[2..], 16).unwrap();
+            let width = if bit == DOUBLE { 8 } else { 4 };
+            let floats = match bit {
+                HAS_UVS => 5,
+                HAS_NORMALS | HAS_COLOURS => 6,
+                _ => 3,
+            };
+            let mut zlib = ZlibEncoder::new(Vec::new(), Compression::fast());
+            zlib.write_all(
+                &[&bit.to_le_bytes()[..], b"m\0", &3u64.to_le_bytes(), &1u64.to_le_bytes()].concat(),
+            )
+            .unwrap();
+            zlib.write_all(&vec![0; 3 * floats * width]).unwrap();
+            zlib.write_all(&[0u32, 1, 2].map(u32::to_le_bytes).concat()).unwrap();
+            let file = [&MAGIC.to_le_bytes()[..], &4u16.to_le_bytes(), &zlib.finish().unwrap()].concat();
+            let mut remarks = Vec::new();
+            let mesh = read(&file, 0, Path::new("a.serialized"), &mut remarks).unwrap();
+            assert_eq!(mesh.triangles, [[0, 1, 2]], "{flag}");
+            let is_named = remarks.iter().any(|remark| remark.what.contains(flag));
+            assert_eq!((is_named, remarks.len() < 2), (fate(FLAGS, flag) == Fate::Named, true), "{flag}");
+        }
+    }
+
+    #[test]
     fn a_name_without_an_end_is_an_error_at_once() {
         let mut zlib = ZlibEncoder::new(Vec::new(), Compression::fast());
         zlib.write_all(&0x1000u32.to_le_bytes()).unwrap();
         (0..300).for_each(|_| zlib.write_all(&[b'a'; 1 << 20]).unwrap());
         let file = [&MAGIC.to_le_bytes()[..], &4u16.to_le_bytes(), &zlib.finish().unwrap()].concat();
-        let message = read(&file, 0, Path::new("a.serialized")).unwrap_err().to_string();
+        let message = read(&file, 0, Path::new("a.serialized"), &mut Vec::new()).unwrap_err().to_string();
         assert!(message.contains("a.serialized") && message.contains("its name is longer"), "{message}");
     }
 }

@@ -18,7 +18,7 @@ pub fn rectangle() -> RawMesh {
         normals: vec![Vec3::Z; 4],
         uvs: [[0., 0.], [1., 0.], [0., 1.], [1., 1.]].map(Vec2::from).to_vec(),
         triangles: vec![[1, 2, 0], [1, 3, 2]],
-        groups: vec![],
+        ..RawMesh::default()
     }
 }
 

@@ -177,7 +177,13 @@ impl Converter<'_> {
         };
         let scale = bsdf.float("scale")?.unwrap_or(1.0) as f32;
         self.name_relief_rules(bsdf)?;
-        let relief = match texture.map(|texture| self.texture(&texture, 0)).transpose()? {
+        let found = texture.map(|texture| self.texture(&texture, 0)).transpose()?;
+        let relief = match found {
+            Some(Reflectance::Textured { texture, .. }) if !self.contents.is_image(texture) => {
+                let what = "a relief by attributes of a mesh is not modelled";
+                self.log.warn(&bsdf.place, what, "it is left out")?;
+                None
+            }
             Some(Reflectance::Textured { texture, .. }) if normals => {
                 Some(Relief::Normals { texture, strength: 1.0, y_along_v: false })
             }

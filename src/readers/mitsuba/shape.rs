@@ -8,7 +8,7 @@ use crate::mesh::{Normals, Placement, shapes};
 use crate::plan::{MaterialPlan, MeshPlan, MeshSource};
 use crate::selection::PartSelection;
 use glam::{DMat4, DVec3};
-use scene::{Material, MaterialId};
+use scene::{MaterialId, TextureId};
 
 impl Converter<'_> {
     /// Adds a shape with the outer transform `outer`: a mesh, or the meshes of a group.
@@ -116,17 +116,22 @@ impl Converter<'_> {
         };
         let bsdf = self.only(shape, "bsdf")?;
         let material = self.material_of_shape(bsdf.as_ref(), emission.is_some())?;
-        let textured = self.is_textured(material) || emission.is_some_and(|e| e.texture.is_some());
+        let of_emission = emission.and_then(|emission| emission.texture);
+        let textured =
+            self.reads_images(material) || of_emission.is_some_and(|texture| self.contents.is_image(texture));
+        let to_world = shape.transform("to_world")?.unwrap_or(DMat4::IDENTITY);
+        // Mitsuba turns a sphere inside out if the sphere's own transform mirrors it.
+        let is_turned = shape.plugin == "sphere" && to_world.determinant() < 0.0;
         let placement = Placement {
-            to_world: outer * shape.transform("to_world")?.unwrap_or(DMat4::IDENTITY),
+            to_world: outer * to_world,
             normals: if shape.boolean("face_normals", false)? { Normals::Flat } else { Normals::Smooth },
-            flip_normals: shape.boolean("flip_normals", false)?,
+            flip_normals: shape.boolean("flip_normals", false)? != is_turned,
             v_down,
             needs_uv: textured,
         };
         shape.report_unused(self.log)?;
         let name = shape.id.clone().unwrap_or_else(|| match &geometry {
-            MeshSource::Obj(path, _) | MeshSource::Ply(path) => stem_of(path),
+            MeshSource::Obj(path, _) | MeshSource::Ply(path) | MeshSource::Stl(path) => stem_of(path),
             MeshSource::Serialized(path, index) => format!("{}@{index}", stem_of(path)),
             MeshSource::Ready(_) | MeshSource::Shared(_) => shape.plugin.clone(),
         });
@@ -140,7 +145,12 @@ impl Converter<'_> {
         self.log.note(&shape.place, what, "128 facets around, area and normals exact");
     }
 
-    fn is_textured(&self, id: MaterialId) -> bool {
-        self.contents.materials.get(id.0 as usize).is_some_and(Material::is_textured)
+    /// Returns true if a material looks images up.
+    fn reads_images(&self, id: MaterialId) -> bool {
+        let is_image = |texture: &TextureId| self.contents.is_image(*texture);
+        self.contents
+            .materials
+            .get(id.0 as usize)
+            .is_some_and(|material| material.relief.is_some() || material.textures().iter().any(is_image))
     }
 }

@@ -116,6 +116,7 @@ impl Converter<'_> {
         let reflectance = match object.plugin.as_str() {
             "bitmap" => self.bitmap(object)?,
             "checkerboard" => self.checkerboard(object, depth)?,
+            "mesh_attribute" => self.mesh_attribute(object)?,
             "uniform" | "srgb" | "rgb" | "spectrum" | "d65" => {
                 let value = match self.colour(object, "color")? {
                     Some(colour) => Some(colour),
@@ -150,6 +151,17 @@ impl Converter<'_> {
         };
         object.report_unused(self.log)?;
         Ok(reflectance)
+    }
+
+    /// Converts an attribute of meshes.
+    fn mesh_attribute(&mut self, object: &Object) -> Result<Reflectance, SceneError> {
+        let name = object.string("name")?.unwrap_or_default();
+        if !name.starts_with("vertex_") && !name.starts_with("face_") {
+            let what = format!("the mesh attribute \"{name}\" is neither of vertices nor of faces");
+            return Err(object.place.wrong(what, "give a name that starts with vertex_ or face_"));
+        }
+        let scale = Rgb::splat(object.float("scale")?.unwrap_or(1.0) as f32);
+        Ok(Reflectance::Textured { texture: self.contents.add_attribute(&name, None), scale })
     }
 
     /// Converts a `scale` texture of Mitsuba 0.6: another texture times a constant.

@@ -1,12 +1,12 @@
 //! Colours of the native format.
 //!
 //! A colour is a number for a grey, linear `[r, g, b]`, `"#rrggbb"` in sRGB, or one of these times a factor. Surfaces
-//! also accept an image.
+//! also accept an image, or an attribute of the mesh.
 
 use super::builder::SceneBuilder;
-use super::text::{ColourText, Number, TextureText};
-use crate::decode::srgb_to_linear;
+use super::text::{AttributeText, ColourText, Number, TextureText};
 use crate::error::{Location, SceneError};
+use crate::lighting::hexadecimal;
 use base::math::Rgb;
 use glam::DVec3;
 use scene::Reflectance;
@@ -18,7 +18,8 @@ impl ColourText {
     /// If the colour is an image or not finite.
     pub fn rgb(&self, what: &str, place: &Location) -> Result<Rgb, SceneError> {
         let colour = self.constant(place)?;
-        let image = || place.wrong(format!("{what} is an image"), "give a number, [r, g, b] or \"#rrggbb\"");
+        let image =
+            || place.wrong(format!("{what} is no constant"), "give a number, [r, g, b] or \"#rrggbb\"");
         let colour = colour.ok_or_else(image)?;
         let wrong = || place.wrong(format!("{what} is not finite"), "write finite numbers");
         colour.is_finite().then_some(colour).ok_or_else(wrong)
@@ -38,7 +39,7 @@ impl ColourText {
             ColourText::Scaled { colour, scale } => {
                 colour.constant(place)?.map(|colour| colour * scale.0 as f32)
             }
-            ColourText::Texture(_) => None,
+            ColourText::Attribute(_) | ColourText::Texture(_) => None,
         })
     }
 
@@ -51,27 +52,33 @@ impl ColourText {
                 let inner = colour.image()?;
                 Some(TextureText { scale: Some(Number(inner.scale() * scale.0)), ..inner })
             }
-            ColourText::Grey(_) | ColourText::Rgb(_) => None,
+            ColourText::Grey(_) | ColourText::Rgb(_) | ColourText::Attribute(_) => None,
+        }
+    }
+
+    /// Returns the attribute with the factor on its values; `None` for other colours.
+    fn attribute(&self) -> Option<AttributeText> {
+        match self {
+            ColourText::Attribute(attribute) => Some(attribute.clone()),
+            ColourText::Scaled { colour, scale } => {
+                let inner = colour.attribute()?;
+                Some(AttributeText { scale: Some(Number(inner.scale() * scale.0)), ..inner })
+            }
+            _ => None,
         }
     }
 }
 
 impl SceneBuilder<'_> {
-    /// Returns the colour of a surface: constant or an image.
+    /// Returns the colour of a surface: constant, an image or an attribute of the mesh.
     pub(super) fn colour(&mut self, text: &ColourText, place: &Location) -> Result<Reflectance, SceneError> {
+        if let Some(attribute) = text.attribute() {
+            let scale = Rgb::splat(attribute.scale() as f32);
+            return Ok(Reflectance::Textured { texture: self.attribute_id(&attribute, false, place), scale });
+        }
         match (text.constant(place)?, text.image()) {
             (None, Some(image)) => Ok(self.texture(&image, place)),
             (colour, _) => Ok(Reflectance::Constant(colour.unwrap_or_default())),
         }
     }
-}
-
-/// Converts six hexadecimal digits in sRGB to linear colour.
-fn hexadecimal(digits: &str) -> Option<Rgb> {
-    if digits.len() != 6 || !digits.bytes().all(|b| b.is_ascii_hexdigit()) {
-        return None;
-    }
-    let code = u32::from_str_radix(digits, 16).ok()?;
-    let channel = |shift: u32| srgb_to_linear((code >> shift & 255) as f32 / 255.0);
-    Some(Rgb::new(channel(16), channel(8), channel(0)))
 }

@@ -1,7 +1,10 @@
 //! Materials of the native format.
 
 use super::builder::SceneBuilder;
-use super::text::{ColourText, FilterText, MapText, MaterialText, Number, NumberText, TextureText, WrapText};
+use super::text::{
+    AttributeText, ColourText, FilterText, MapText, MaterialText, Number, NumberText, TextureText, WrapText,
+};
+use crate::attenuation::absorption;
 use crate::check;
 use crate::error::{Location, SceneError};
 use crate::layers;
@@ -49,7 +52,8 @@ impl SceneBuilder<'_> {
                     (text.kind == "principled").then(|| self.principled(text, &place)).transpose()?;
                 let principled = principled.map(Box::new);
                 let (two_sided, lobes) = (text.two_sided.unwrap_or(true), Vec::from_iter(lobe));
-                Material { two_sided, diffuse, coat, lobes, principled, ..Material::default() }
+                let absorption = attenuation(text, &place)?;
+                Material { two_sided, diffuse, coat, lobes, principled, absorption, ..Material::default() }
             }
         };
         let opacity = text.opacity.clone().map(|opacity| self.share(opacity, &place)).or(material.opacity);
@@ -227,6 +231,7 @@ impl SceneBuilder<'_> {
             }
             NumberText::File(file) => self.number(TextureText { file, ..TextureText::default() }, place),
             NumberText::Texture(texture) => self.number(texture, place),
+            NumberText::Attribute(attribute) => self.attribute_number(&attribute, place),
         };
         let distribution = match text.distribution.as_deref() {
             None | Some("ggx") => Distribution::Ggx,
@@ -257,6 +262,7 @@ impl SceneBuilder<'_> {
             eta: index_of_refraction(text),
             spec_tint: share(&text.spec_tint, 0.0),
             spec_trans: share(&text.spec_trans, 0.0),
+            tints_each_passage: false,
             sheen: share(&text.sheen, 0.0),
             sheen_tint: share(&text.sheen_tint, 0.0),
             clearcoat: share(&text.clearcoat, 0.0),
@@ -292,7 +298,25 @@ impl SceneBuilder<'_> {
             NumberText::Number(Number(number)) => Share::Constant(number as f32),
             NumberText::File(file) => self.number(TextureText { file, ..TextureText::default() }, place),
             NumberText::Texture(texture) => self.number(texture, place),
+            NumberText::Attribute(attribute) => self.attribute_number(&attribute, place),
         }
+    }
+
+    fn attribute_number(&mut self, text: &AttributeText, place: &Location) -> Parameter<f32> {
+        let texture = self.attribute_id(text, true, place);
+        Parameter::Textured { texture, scale: text.scale() as f32 }
+    }
+
+    /// Returns the texture that is an attribute of meshes. `raw` is true if its image holds numbers.
+    pub(super) fn attribute_id(&mut self, text: &AttributeText, raw: bool, place: &Location) -> TextureId {
+        let image = text.image.as_ref().map(|image| {
+            let image = match image.clone() {
+                MapText::File(file) => TextureText { file, ..TextureText::default() },
+                MapText::Texture(texture) => texture,
+            };
+            self.texture_id(&TextureText { raw: raw || image.raw, ..image }, place)
+        });
+        self.contents.add_attribute(&text.attribute, image)
     }
 
     fn number(&mut self, text: TextureText, place: &Location) -> Parameter<f32> {
@@ -328,6 +352,26 @@ fn index_of_refraction(text: &MaterialText) -> f32 {
     text.ior.map_or(1.5, f64::from) as f32
 }
 
+/// Returns the absorption coefficient inside glass; `None` if nothing is absorbed.
+fn attenuation(text: &MaterialText, place: &Location) -> Result<Option<Rgb>, SceneError> {
+    let colour = match &text.attenuation_colour {
+        Some(colour) => colour.rgb("attenuation_colour", place)?,
+        None => Rgb::ONE,
+    };
+    let distance = text.attenuation_distance.map_or(1.0, f64::from);
+    let is_share = colour.min_element() >= 0.0 && colour.max_element() <= 1.0;
+    if !(is_share && distance > 0.0) {
+        let what = format!("the glass \"{}\" turns light into {colour} over {distance}", text.name);
+        return Err(place.wrong(what, "give a colour from 0 to 1 and a distance above 0"));
+    }
+    let absorption = absorption(colour, distance);
+    if absorption.is_some() && text.thin == Some(true) {
+        let what = format!("the glass \"{}\" is thin and absorbs inside", text.name);
+        return Err(place.wrong(what, "leave out thin, or give transmittance instead"));
+    }
+    Ok(absorption)
+}
+
 /// Rejects keys that mean nothing for the kind of material.
 fn check_keys(text: &MaterialText, place: &Location) -> Result<(), SceneError> {
     let known: &[&str] = match text.kind.as_str() {
@@ -336,7 +380,16 @@ fn check_keys(text: &MaterialText, place: &Location) -> Result<(), SceneError> {
         "plastic" => &["diffuse", "specular", "ior", "nonlinear"],
         "roughplastic" => &["diffuse", "specular", "ior", "nonlinear", "alpha", "distribution"],
         "conductor" => &["preset", "eta", "k", "specular", "alpha", "alpha_v", "distribution"],
-        "glass" => &["ior", "reflectance", "transmittance", "thin", "alpha", "distribution"],
+        "glass" => &[
+            "ior",
+            "reflectance",
+            "transmittance",
+            "thin",
+            "alpha",
+            "distribution",
+            "attenuation_colour",
+            "attenuation_distance",
+        ],
         "principled" => &[
             "base_color",
             "metallic",
@@ -345,6 +398,8 @@ fn check_keys(text: &MaterialText, place: &Location) -> Result<(), SceneError> {
             "ior",
             "spec_tint",
             "spec_trans",
+            "attenuation_colour",
+            "attenuation_distance",
             "sheen",
             "sheen_tint",
             "clearcoat",
@@ -371,6 +426,8 @@ fn check_keys(text: &MaterialText, place: &Location) -> Result<(), SceneError> {
         ("eta", text.eta.is_some()),
         ("k", text.k.is_some()),
         ("thin", text.thin.is_some()),
+        ("attenuation_colour", text.attenuation_colour.is_some()),
+        ("attenuation_distance", text.attenuation_distance.is_some()),
         ("base_color", text.base_color.is_some()),
         ("metallic", text.metallic.is_some()),
         ("roughness", text.roughness.is_some()),

@@ -3,13 +3,13 @@
 use super::builder::SceneBuilder;
 use super::text::{ColourText, MeshText, NamesText, Number, ScaleText, StepText};
 use crate::error::{Location, SceneError};
-use crate::file::stem_of;
+use crate::file::{read_file, stem_of};
 use crate::gltf::{self, FRAMES_PER_SECOND, ImportOptions};
-use crate::mesh::{Normals, Placement, RawMesh, shapes};
+use crate::mesh::{Normals, Placement, RawMesh, ply, shapes};
 use crate::plan::{MaterialPlan, MeshPlan, MeshSource};
 use crate::selection::PartSelection;
 use base::math::unit;
-use glam::{DMat4, DVec3};
+use glam::{DMat3, DMat4, DVec3};
 use lightsplat_scenes::Part;
 use scene::{Emission, MaterialId, Reflectance};
 use std::path::{Path, PathBuf};
@@ -22,17 +22,21 @@ impl SceneBuilder<'_> {
         if let Some(path) = self.model(text) {
             return self.import(&path, text, &place);
         }
-        if text.lumens_per_watt.is_some() || text.fps.is_some() {
-            let what = "lumens_per_watt and fps mean nothing for a mesh that is no glTF model";
+        if text.lumens_per_watt.is_some() || text.fps.is_some() || text.time.is_some() {
+            let what = "lumens_per_watt, fps and time mean nothing for a mesh that is no glTF model";
             return Err(place.wrong(what, "leave them out"));
         }
         let (name, geometry) = self.geometry(text, &place)?;
         if !matches!(geometry, MeshSource::Obj(..)) && (text.group.is_some() || text.except.is_some()) {
             return Err(place.wrong("the mesh has no groups", "leave group and except out"));
         }
+        let to_world = self.transform(&text.transform)?;
         let material = match (self.named_material(text)?, &geometry) {
             (Some(material), _) => MaterialPlan::One(material),
-            (None, MeshSource::Obj(path, _)) => self.mtl_materials(path, &place)?,
+            (None, MeshSource::Obj(path, _)) => self.mtl_materials(path, &place, &to_world)?,
+            (None, MeshSource::Ply(path)) if ply::has_colours(&read_file(path, &place)?) => {
+                MaterialPlan::One(self.default_material(true, &place))
+            }
             (None, _) => {
                 return Err(place.wrong("the mesh has no material", "add material = \"...\""));
             }
@@ -40,7 +44,7 @@ impl SceneBuilder<'_> {
         let emission =
             text.emission.as_ref().map(|colour| self.emission(colour, text, &place)).transpose()?;
         let placement = Placement {
-            to_world: self.transform(&text.transform)?,
+            to_world,
             normals: Normals::AsGiven,
             flip_normals: text.flip_normals,
             // The v of a sphere counts from its north pole.
@@ -74,6 +78,7 @@ impl SceneBuilder<'_> {
             emission,
             lumens_per_watt: positive(text.lumens_per_watt, "lumens_per_watt")?.map(|lumens| lumens as f32),
             fps: positive(text.fps, "fps")?.unwrap_or(FRAMES_PER_SECOND),
+            time: text.time.map(f64::from),
             camera: None,
         };
         let imported = gltf::import(path, place, &options, &mut self.contents, self.log)?;
@@ -120,10 +125,11 @@ impl SceneBuilder<'_> {
                 let geometry = match extension.as_deref() {
                     Some("obj") => MeshSource::Obj(path, selection(text)),
                     Some("ply") => MeshSource::Ply(path),
+                    Some("stl") => MeshSource::Stl(path),
                     Some("serialized") => MeshSource::Serialized(path, text.index.unwrap_or(0)),
                     _ => {
                         let what = format!("unknown kind of mesh file \"{file}\"");
-                        return Err(place.wrong(what, "use .glb, .gltf, .obj, .ply or .serialized"));
+                        return Err(place.wrong(what, "use .glb, .gltf, .obj, .ply, .stl or .serialized"));
                     }
                 };
                 Ok((name, geometry))
@@ -159,9 +165,15 @@ impl SceneBuilder<'_> {
     }
 
     /// Reads the materials of the OBJ's MTL files. They are assigned by name.
-    fn mtl_materials(&mut self, path: &Path, place: &Location) -> Result<MaterialPlan, SceneError> {
-        let names = self.read_mtl(path, place)?;
-        let other = self.default_material(place);
+    pub(super) fn mtl_materials(
+        &mut self,
+        path: &Path,
+        place: &Location,
+        to_world: &DMat4,
+    ) -> Result<MaterialPlan, SceneError> {
+        let unit = DMat3::from_mat4(*to_world).determinant().abs().cbrt();
+        let (names, has_colours) = self.read_mtl(path, place, unit as f32)?;
+        let other = self.default_material(has_colours, place);
         Ok(MaterialPlan::ByName(names, other))
     }
 }
@@ -201,6 +213,6 @@ fn raw_part(part: &Part) -> RawMesh {
         normals: part.normals.clone(),
         uvs: part.uvs.clone(),
         triangles: part.triangles.clone(),
-        groups: Vec::new(),
+        ..RawMesh::default()
     }
 }

@@ -4,11 +4,14 @@
 
 mod builder;
 mod camera;
+mod classic;
+mod classic_maps;
 mod colour;
 mod light;
 mod material;
 mod mesh;
 mod mistake;
+mod model;
 mod mtl;
 mod path;
 mod sky;
@@ -23,6 +26,8 @@ use scene::MaterialId;
 use source::SourceText;
 use std::path::Path;
 use text::SceneText;
+
+pub(crate) use model::read as read_model;
 
 /// Reads the description at `path`.
 pub(super) fn read(path: &Path, log: &mut Log) -> Result<ScenePlan, SceneError> {
@@ -68,6 +73,8 @@ pub(super) fn read(path: &Path, log: &mut Log) -> Result<ScenePlan, SceneError> 
     })
 }
 
+#[cfg(test)]
+mod classic_tests;
 #[cfg(test)]
 mod page;
 #[cfg(test)]

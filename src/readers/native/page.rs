@@ -1,8 +1,8 @@
 //! Tests of the page `docs/scene-format.md` against the code: keys, types, kinds and defaults.
 
 use super::text::{
-    CameraText, EnvironmentText, KeyText, LightText, MaterialText, MeshText, PathText, SceneText, SkyText,
-    StepText, TextureText,
+    AttributeText, CameraText, EnvironmentText, KeyText, LightText, MaterialText, MeshText, PathText,
+    SceneText, SkyText, StepText, TextureText,
 };
 use crate::constants::conductor_names;
 use crate::{LoadOptions, fnv1a, load};
@@ -70,6 +70,8 @@ fn known<T: DeserializeOwned>() -> BTreeSet<String> {
 fn values(kind: &str) -> (Vec<&'static str>, Vec<&'static str>) {
     let colours = vec!["0.5", "2", "[0.1, 0.2, 3]", "\"#ff8800\"", "{ colour = \"#ff8800\", scale = 9.0 }"];
     let images = vec!["\"a.png\"", "{ file = \"a.png\", tiles = [2, 2] }"];
+    let attributes =
+        vec!["{ attribute = \"color\" }", "{ attribute = \"vertex_a\", scale = 2, image = \"a.png\" }"];
     match kind {
         "text" => (vec![], vec!["1", "[1.0]"]),
         "name or names" => (vec!["\"a\"", "[\"a\", \"b\"]"], vec!["1", "[1]"]),
@@ -79,9 +81,9 @@ fn values(kind: &str) -> (Vec<&'static str>, Vec<&'static str>) {
         "vector" => (vec!["[1, 2.5, 3]"], vec!["1", "[1, 2]", "\"#ffffff\""]),
         "pair" => (vec!["[1, 2]"], vec!["1", "[1]"]),
         "colour" => (colours, vec!["true", "[1, 2]"]),
-        "colour or image" => ([colours, images].concat(), vec!["true", "[1, 2]"]),
+        "colour or image" => ([colours, images, attributes].concat(), vec!["true", "[1, 2]"]),
         "image" => (images, vec!["true", "0.5"]),
-        "number or image" => ([vec!["0.5"], images].concat(), vec!["true", "[1, 2, 3]"]),
+        "number or image" => ([vec!["0.5"], images, attributes].concat(), vec!["true", "[1, 2, 3]"]),
         "moment" => (vec!["2024-06-21T12:00:00Z"], vec!["1", "\"noon\""]),
         "table" | "list of tables" | "list of numbers" => (vec![], vec!["true", "1"]),
         other => panic!("the page has no type \"{other}\""),
@@ -143,6 +145,7 @@ fn templates() -> Vec<(&'static str, String)> {
         ),
         of("`[[material]]`", "material = [{ name = \"m\", kind = \"diffuse\", reflectance = 0.5, @ }]"),
         of("Images", "material = [{ name = \"m\", kind = \"diffuse\", reflectance = { @ } }]"),
+        of("Attributes of meshes", "material = [{ name = \"m\", kind = \"diffuse\", reflectance = { @ } }]"),
         of("`[environment]`", "environment = { file = \"a.png\", @ }"),
         of("`[sky]`", "sky = { date = 2024-06-21T12:00:00Z, place = [50, 10], @ }"),
     ]
@@ -200,6 +203,7 @@ fn the_page_lists_every_key_and_its_type() {
     check::<MeshText>("`[[mesh]]`");
     check::<StepText>("`[[mesh]]`: `transform`");
     check::<TextureText>("Images");
+    check::<AttributeText>("Attributes of meshes");
     check::<EnvironmentText>("`[environment]`");
     check::<SkyText>("`[sky]`");
     for (kind, rows) in kinds("`[[material]]`") {
@@ -285,9 +289,9 @@ fn colours_are_the_same_everywhere_and_images_only_where_the_page_says() {
 }
 
 #[test]
-fn the_tutorial_of_the_readme_loads_by_itself() {
-    let readme = include_str!("../../../README.md");
-    let (_, rest) = readme.split_once("<!-- tutorial -->\n```toml\n").unwrap();
+fn the_tutorial_loads_by_itself() {
+    let page = include_str!("../../../docs/first-scene.md");
+    let (_, rest) = page.split_once("<!-- tutorial -->\n```toml\n").unwrap();
     let text = rest.split("```").next().unwrap();
     assert!(text.lines().filter(|line| !line.is_empty()).count() <= 20);
     outcome(text).unwrap_or_else(|e| panic!("{e}"));

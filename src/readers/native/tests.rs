@@ -51,6 +51,35 @@ fn materials_are_made_of_others() {
 }
 
 #[test]
+fn glass_absorbs_by_colour_and_distance() {
+    let glass = |more: &str| {
+        let text = format!(
+            "material = [{{ name = \"g\", {more} }}]\n{HEAD}[[mesh]]\nshape = \"sphere\"\nmaterial = \"g\"\n{SKY}"
+        );
+        load_text(&text).map(|loaded| loaded.scene.materials[0].absorption)
+    };
+    let wine = "attenuation_colour = [0.5, 0.25, 1], attenuation_distance = 2";
+    let sigma = Vec3::new(0.5f32.ln(), 0.25f32.ln(), 0.0) * -0.5;
+    for kind in ["kind = \"glass\"", "kind = \"glass\", alpha = 0.2", "kind = \"principled\", spec_trans = 1"]
+    {
+        let found = glass(&format!("{kind}, {wine}")).unwrap().unwrap();
+        assert!((found - sigma).abs().max_element() < 1e-6, "{found}");
+        for nothing in ["attenuation_distance = 3", "attenuation_colour = 1"] {
+            assert_eq!(glass(&format!("{kind}, {nothing}")), Ok(None));
+        }
+        assert!(glass(&format!("{kind}, attenuation_colour = 0")).unwrap().unwrap().is_finite());
+    }
+    for (wrong, message) in [
+        ("kind = \"glass\", thin = true, attenuation_colour = 0.5", "leave out thin"),
+        ("kind = \"glass\", attenuation_colour = 1.5", "from 0 to 1"),
+        ("kind = \"glass\", attenuation_colour = 0.5, attenuation_distance = 0", "distance above 0"),
+    ] {
+        let error = glass(wrong).unwrap_err();
+        assert!(error.contains(message), "{error}");
+    }
+}
+
+#[test]
 fn every_kind_of_material_light_and_step_is_read() {
     let text = r#"
         name = "all"
@@ -224,7 +253,10 @@ fn a_mesh_file_in_which_nothing_is_found_is_warned_of_and_an_error_under_strict(
         let mesh = format!("[[mesh]]\nfile = \"{name}\"\nmaterial = \"m\"\n");
         fs::write(&path, format!("{HEAD}{GREY}{mesh}{SKY}")).unwrap();
         let loaded = load(&path, &LoadOptions::default()).unwrap();
-        let [warning] = &loaded.warnings[..] else { panic!("{name}: {:?}", loaded.warnings) };
+        let [warning, more @ ..] = &loaded.warnings[..] else { panic!("{name}: no warning") };
+        // Strips are named besides.
+        assert_eq!(more.len(), usize::from(*name == "e.ply"), "{more:?}");
+        assert!(more.iter().all(|more| more.what.contains("tristrips")), "{more:?}");
         assert!(warning.severity == Severity::Warning && warning.what.contains(name), "{warning}");
         let strict = load(&path, &LoadOptions { strict: true, ..LoadOptions::default() });
         assert!(strict.unwrap_err().to_string().contains("s.toml:10:"));
@@ -262,7 +294,8 @@ fn an_obj_brings_its_mtl_materials() {
     let emission: Vec<Option<Vec3>> = scene.meshes.iter().map(|m| m.emission.map(|e| e.radiance)).collect();
     assert_eq!(emission, [None, None, None, None, Some(Vec3::new(9.0, 8.0, 7.0))]);
     assert_eq!((material(3).opacity, material(4).opacity), (None, Some(Share::Constant(0.25))));
-    assert!(loaded.warnings.is_empty(), "{:?}", loaded.warnings);
+    let [lost] = &loaded.warnings[..] else { panic!("{:?}", loaded.warnings) };
+    assert!(lost.to_string().contains("not in its libraries: \"lost\"; a grey of 0.5 stands in"), "{lost}");
     assert_eq!(scene.sources.len(), 3);
 
     let lamp = format!(

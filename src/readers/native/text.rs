@@ -6,7 +6,7 @@ use glam::DVec3;
 use serde::Deserialize;
 use toml::Spanned;
 
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct SceneText {
     pub name: Option<String>,
@@ -130,6 +130,8 @@ pub(super) struct MaterialText {
     pub eta: Option<ColourText>,
     pub k: Option<ColourText>,
     pub thin: Option<bool>,
+    pub attenuation_colour: Option<ColourText>,
+    pub attenuation_distance: Option<Number>,
     pub opacity: Option<NumberText>,
     pub normal_map: Option<MapText>,
     pub bump_map: Option<MapText>,
@@ -153,7 +155,7 @@ pub(super) struct MaterialText {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(
     untagged,
-    expecting = "expected a number, [r, g, b], \"#rrggbb\", { colour = ..., scale = ... } or an image"
+    expecting = "expected a number, [r, g, b], \"#rrggbb\", { colour = ..., scale = ... }, { attribute = \"...\" } or an image"
 )]
 pub(super) enum ColourText {
     Grey(Number),
@@ -165,19 +167,21 @@ pub(super) enum ColourText {
         colour: Box<ColourText>,
         scale: Number,
     },
+    Attribute(AttributeText),
     Texture(TextureText),
 }
 
-/// A number, or an image with or without options.
+/// A number, an image with or without options, or an attribute.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(
     untagged,
     deny_unknown_fields,
-    expecting = "expected a number, an image's name or { file = \"...\" }"
+    expecting = "expected a number, an image's name, { file = \"...\" } or { attribute = \"...\" }"
 )]
 pub(super) enum NumberText {
     Number(Number),
     File(String),
+    Attribute(AttributeText),
     Texture(TextureText),
 }
 
@@ -187,6 +191,24 @@ pub(super) enum NumberText {
 pub(super) enum MapText {
     File(String),
     Texture(TextureText),
+}
+
+/// An attribute of the mesh, such as vertex colours.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct AttributeText {
+    pub attribute: String,
+    /// Factor on every value.
+    pub scale: Option<Number>,
+    /// Image to multiply with.
+    pub image: Option<MapText>,
+}
+
+impl AttributeText {
+    /// Returns the factor on every value.
+    pub fn scale(&self) -> f64 {
+        self.scale.map_or(1.0, f64::from)
+    }
 }
 
 #[derive(Clone, Debug, Default, Deserialize)]
@@ -241,6 +263,8 @@ pub(super) struct MeshText {
     pub lumens_per_watt: Option<Number>,
     /// Frames per second of a glTF model's animation.
     pub fps: Option<Number>,
+    /// Time in seconds of a glTF model's animation whose pose the model takes.
+    pub time: Option<Number>,
     pub material: Option<Spanned<String>>,
     #[serde(default)]
     pub transform: Vec<Spanned<StepText>>,

@@ -1,4 +1,6 @@
-//! File names of a walk's frames: `f.####.exr` or `f.%04d.exr`. Numbers are padded with zeros to that many digits.
+//! File names of frames: `f.####.exr` or `f.%04d.exr`. Numbers are padded with zeros to that many digits.
+//!
+//! One rule holds for the frames of walks and for single frames.
 
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
@@ -23,19 +25,13 @@ impl FileNames {
     }
 }
 
-impl FromStr for FileNames {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<FileNames, String> {
-        let path = Path::new(text);
+impl FileNames {
+    /// Parses a name with any extension; `None` if it has no place for a number.
+    fn parse(path: &Path) -> Result<Option<FileNames>, String> {
         let folder = path.parent().unwrap_or(Path::new("")).to_owned();
         let name = path.file_name().and_then(|name| name.to_str()).unwrap_or_default();
         let mut places = places(name);
-        let Some((start, end, digits)) = places.next() else {
-            return Err(
-                "the file's name has no place for the frame's number; write one like f.####.exr or f.%04d.exr".to_owned()
-            );
-        };
+        let Some((start, end, digits)) = places.next() else { return Ok(None) };
         if places.next().is_some() {
             return Err("the file's name has more than one place for the frame's number".to_owned());
         }
@@ -43,10 +39,38 @@ impl FromStr for FileNames {
             return Err(format!("{digits} digits are more than {MAX_DIGITS}"));
         }
         let (before, after) = (name[..start].to_owned(), name[end..].to_owned());
-        if !after.to_ascii_lowercase().ends_with(".exr") {
+        Ok(Some(FileNames { folder, before, digits, after }))
+    }
+}
+
+impl FromStr for FileNames {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<FileNames, String> {
+        let Some(names) = FileNames::parse(Path::new(text))? else {
+            return Err(
+                "the file's name has no place for the frame's number; write one like f.####.exr or f.%04d.exr".to_owned()
+            );
+        };
+        if !names.after.to_ascii_lowercase().ends_with(".exr") {
             return Err("the file's name must end in .exr".to_owned());
         }
-        Ok(FileNames { folder, before, digits, after })
+        Ok(names)
+    }
+}
+
+/// Returns the file of a single frame: `path`, with the number of the frame where its name has a place for it.
+///
+/// # Errors
+/// If the name has such a place and there is no frame, or the place is invalid.
+pub fn numbered(path: &Path, frame: Option<usize>) -> Result<PathBuf, String> {
+    match (FileNames::parse(path)?, frame) {
+        (None, _) => Ok(path.to_owned()),
+        (Some(names), Some(frame)) => Ok(names.of(frame)),
+        (Some(_), None) => {
+            Err("the file's name has a place for the frame's number; add --frame N, or name the file without # and %d"
+                .to_owned())
+        }
     }
 }
 
@@ -98,6 +122,22 @@ mod tests {
         assert_eq!(name("ü%ü#.exr", 1), "ü%ü1.exr");
         // The name of the folder does not change.
         assert_eq!(name("take##/f#.exr", 3), "take##/f3.exr");
+    }
+
+    #[test]
+    fn single_frames_are_named_as_those_of_walks() {
+        let name = |pattern: &str, frame| {
+            numbered(Path::new(pattern), frame).map(|file| file.to_str().unwrap().to_owned())
+        };
+        for pattern in ["a#/still.####.exr", "a#/still.%04d.png", "a#/still#.png"] {
+            let walked = FileNames::parse(Path::new(pattern)).unwrap().unwrap().of(7);
+            assert_eq!(name(pattern, Some(7)), Ok(walked.to_str().unwrap().to_owned()));
+        }
+        assert_eq!(name("still.####.exr", Some(7)).unwrap(), "still.0007.exr");
+        assert_eq!(name("a#/still.exr", Some(7)).unwrap(), "a#/still.exr");
+        assert_eq!(name("still.exr", None).unwrap(), "still.exr");
+        assert!(name("still.#.exr", None).unwrap_err().contains("--frame"));
+        assert!(name("#.#.exr", Some(7)).unwrap_err().contains("more than one"));
     }
 
     #[test]

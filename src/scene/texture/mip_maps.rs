@@ -5,8 +5,9 @@
 //! stands for. Linear interpolation reaches twice as far as a texel is wide, and the next level blurs fine patterns.
 //! Pixels take several samples, which hide the steps between levels and average along areas that are longer than wide.
 
-use super::image::{Texture, TextureId};
+use super::image::{Filter, Texture, TextureId};
 use super::textures::Textures;
+use crate::attribute::AttributeId;
 use base::math::Rgb;
 use glam::Vec2;
 
@@ -28,11 +29,13 @@ struct Pyramid {
 }
 
 impl MipMaps {
-    /// Shares `textures`, and computes coarser versions of the `filtered` ones.
+    /// Shares `textures`, and computes coarser versions of the `filtered` ones. Cut textures have none.
     pub fn new(textures: &Textures, filtered: impl Iterator<Item = TextureId>) -> MipMaps {
         let mut pyramids: Vec<Pyramid> = Vec::new();
         for TextureId(id) in filtered {
-            let Some(texture) = textures.get(id as usize).filter(|t| t.texels.len() > 1) else { continue };
+            let may_be_coarser =
+                |texture: &&Texture| texture.texels.len() > 1 && !matches!(texture.filter, Filter::Cut(_));
+            let Some(texture) = textures.get(id as usize).filter(may_be_coarser) else { continue };
             pyramids.resize(textures.len(), Pyramid::default());
             let pyramid = &mut pyramids[id as usize];
             if pyramid.levels.is_empty() {
@@ -56,13 +59,20 @@ impl MipMaps {
     }
 
     /// Returns the colour of a texture at `uv`, averaged over a square of side `covered` in texture coordinates if the
-    /// texture has coarser versions; white if there is no such texture.
+    /// texture has coarser versions; white if there is no such texture. `attribute` returns the value of an attribute.
     #[inline]
-    pub fn lookup(&self, id: TextureId, uv: Vec2, covered: f32) -> Rgb {
-        self.textures.by_id(id).map_or(Rgb::ONE, |texture| match covered > 0.0 {
-            true => self.level(texture, id, covered).lookup(uv),
-            false => texture.lookup(uv),
-        })
+    pub fn lookup(
+        &self,
+        id: TextureId,
+        uv: Vec2,
+        covered: f32,
+        attribute: impl FnOnce(AttributeId) -> Rgb,
+    ) -> Rgb {
+        match self.textures.by_id(id) {
+            Some(texture) if covered > 0.0 => self.level(texture, id, covered).lookup(uv),
+            Some(texture) => texture.lookup(uv),
+            None => self.textures.lookup_attribute(id, uv, attribute),
+        }
     }
 
     /// Returns the version of a texture for lookups that stand for a square of side `covered` in texture coordinates.
@@ -96,7 +106,7 @@ fn coarser(texture: &Texture) -> Vec<Texture> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::texture::{Filter, Texels, Wrap};
+    use crate::texture::{Texels, Wrap};
     use glam::Mat3;
 
     /// Returns a checker of 64 × 32 texels, black and white in the upper half, black and red in the lower half.
@@ -136,7 +146,7 @@ mod tests {
             for i in 0..20 {
                 let at = |y: f32| {
                     let uv = Vec2::new(0.0317 * i as f32, y);
-                    maps.lookup(TextureId(0), uv, covered / 64.0)
+                    maps.lookup(TextureId(0), uv, covered / 64.0, |_| Rgb::ZERO)
                 };
                 let near = |found: Rgb, expected: Rgb| (found - expected).abs().max_element() < 1e-5;
                 assert!(near(at(0.75), Rgb::splat(0.5)) && near(at(0.25), Rgb::X * 0.5), "{covered} {i}");

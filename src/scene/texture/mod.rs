@@ -5,6 +5,7 @@
 //! needs only `base`, and all crates that look textures up see the scene already. [`Textures`] is shared, so materials
 //! and emitters hold what they look up and copy no texels.
 
+mod attribute;
 mod coverage;
 mod halving;
 mod image;
@@ -12,6 +13,7 @@ mod mip_maps;
 mod texels;
 mod textures;
 
+pub use attribute::AttributeTexture;
 pub use coverage::{covered, uv_scale};
 pub use image::{Filter, Texture, TextureId, Wrap};
 pub use mip_maps::MipMaps;

@@ -1,37 +1,75 @@
 //! The textures of a scene, shared by all that look them up.
 
+use super::attribute::AttributeTexture;
 use super::image::{Texture, TextureId};
+use crate::attribute::AttributeId;
 use base::math::Rgb;
 use glam::Vec2;
 use std::ops::Deref;
 use std::sync::Arc;
 
-/// Textures of a scene, indexed by [`TextureId`]. A clone shares the texels.
+/// Textures of a scene by [`TextureId`]: images, and attributes of meshes. A clone shares the texels.
+///
+/// As a slice it is that of the images.
 #[derive(Clone, Debug)]
-pub struct Textures(Arc<[Texture]>);
+pub struct Textures {
+    images: Arc<[Texture]>,
+    attributes: Arc<[AttributeTexture]>,
+}
 
 impl Textures {
-    /// Returns the texture of an id; `None` if there is none.
+    /// Returns the images with textures that are attributes of meshes.
+    pub fn with_attributes(self, attributes: Vec<AttributeTexture>) -> Textures {
+        Textures { attributes: attributes.into(), ..self }
+    }
+
+    /// Returns the image of an id; `None` if there is none.
     #[inline]
     pub fn by_id(&self, id: TextureId) -> Option<&Texture> {
-        self.0.get(id.0 as usize)
+        self.images.get(id.0 as usize)
     }
 
-    /// Returns the textures for changes. They are copied first if they are shared.
+    /// Returns the attribute texture of an id; `None` for images.
+    pub fn attribute(&self, id: TextureId) -> Option<&AttributeTexture> {
+        self.attributes.get(id.attribute_number()?)
+    }
+
+    /// Returns all textures that are attributes of meshes.
+    pub fn attributes(&self) -> &[AttributeTexture] {
+        &self.attributes
+    }
+
+    /// Returns the images for changes. They are copied first if they are shared.
     pub fn edit(&mut self) -> &mut [Texture] {
-        Arc::make_mut(&mut self.0)
+        Arc::make_mut(&mut self.images)
     }
 
-    /// Returns the colour of a texture at texture coordinates `uv`; white if there is no such texture.
+    /// Returns the colour of a texture at a point with the texture coordinates `uv`; white if there is no such texture.
+    /// `attribute` returns the value of an attribute at the point.
     #[inline]
-    pub fn lookup(&self, id: TextureId, uv: Vec2) -> Rgb {
-        self.by_id(id).map_or(Rgb::ONE, |texture| texture.lookup(uv))
+    pub fn lookup(&self, id: TextureId, uv: Vec2, attribute: impl FnOnce(AttributeId) -> Rgb) -> Rgb {
+        match self.by_id(id) {
+            Some(image) => image.lookup(uv),
+            None => self.lookup_attribute(id, uv, attribute),
+        }
+    }
+
+    /// Returns the colour of an attribute texture; see [`Textures::lookup`].
+    pub(super) fn lookup_attribute(
+        &self,
+        id: TextureId,
+        uv: Vec2,
+        attribute: impl FnOnce(AttributeId) -> Rgb,
+    ) -> Rgb {
+        let Some(texture) = self.attribute(id) else { return Rgb::ONE };
+        let image = texture.image.and_then(|image| self.by_id(image));
+        image.map_or(Rgb::ONE, |image| image.lookup(uv)) * attribute(texture.attribute)
     }
 }
 
 impl FromIterator<Texture> for Textures {
     fn from_iter<I: IntoIterator<Item = Texture>>(textures: I) -> Textures {
-        Textures(textures.into_iter().collect())
+        Textures { images: textures.into_iter().collect(), attributes: Arc::new([]) }
     }
 }
 
@@ -43,7 +81,7 @@ impl Default for Textures {
 
 impl From<Vec<Texture>> for Textures {
     fn from(textures: Vec<Texture>) -> Textures {
-        Textures(textures.into())
+        Textures { images: textures.into(), attributes: Arc::new([]) }
     }
 }
 
@@ -52,7 +90,7 @@ impl<'a> IntoIterator for &'a Textures {
     type IntoIter = std::slice::Iter<'a, Texture>;
 
     fn into_iter(self) -> Self::IntoIter {
-        self.0.iter()
+        self.images.iter()
     }
 }
 
@@ -61,6 +99,6 @@ impl Deref for Textures {
 
     #[inline]
     fn deref(&self) -> &[Texture] {
-        &self.0
+        &self.images
     }
 }

@@ -10,7 +10,7 @@ use glam::Vec3;
 use rayon::prelude::*;
 use std::ops::Range;
 use world::shadow;
-use world::{World, beyond};
+use world::{Interior, World, beyond};
 
 /// Number of paths per task.
 const CHUNK: u32 = 1024;
@@ -205,9 +205,12 @@ fn follow(
     photons: &mut Vec<CausticPhoton>,
 ) -> u64 {
     let EmissionSample { mut ray, mut flux, radiance } = first;
-    let (mut edges, mut is_bent) = (1, false);
+    let (mut edges, mut is_bent, mut interior) = (1, false, Interior::NONE);
     for rays in 1..=u64::from(MAX_EDGES) {
         let Some(surface) = world.intersect(&ray) else { return rays };
+        if world.absorbs() {
+            flux *= world.edge_shares(interior, &surface, ray.direction, ray.t_near)[1];
+        }
         let towards_light = -ray.direction;
         let wi = surface.frame.to_local(towards_light);
         let cos_g = surface.normal.dot(towards_light);
@@ -237,6 +240,7 @@ fn follow(
             return rays;
         }
         flux = next / survival;
+        interior = world.interior_after(interior, &surface, direction, s.straight);
         if s.straight {
             ray = beyond(&ray, surface.position, surface.normal, surface.t);
         } else {

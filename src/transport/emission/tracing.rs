@@ -9,7 +9,7 @@ use super::{EmissionSample, Photon, PhotonEmitter, PhotonHit};
 use base::math::{Rgb, luminance};
 use base::sampling::Sampler;
 use glam::Vec3;
-use world::shadow;
+use world::{Interior, shadow};
 
 /// Number of paths traced by one task.
 pub(super) const CHUNK: u32 = 1024;
@@ -58,9 +58,13 @@ impl PathTracer<'_, '_> {
             return 0;
         };
         let world = self.emitter.world;
+        let mut interior = Interior::NONE;
         for edge in 1..=self.max_edges {
             let rays = u64::from(edge);
             let Some(surface) = world.intersect(&ray) else { return rays };
+            if world.absorbs() {
+                flux *= world.edge_shares(interior, &surface, ray.direction, ray.t_near)[1];
+            }
             let towards_light = -ray.direction;
             let wi = surface.frame.to_local(towards_light);
             let cos_g = surface.normal.dot(towards_light);
@@ -96,6 +100,7 @@ impl PathTracer<'_, '_> {
                 return rays;
             }
             flux = next / survival;
+            interior = world.interior_after(interior, &surface, direction, s.straight);
             ray = shadow::ray_from(surface.position, surface.normal, direction);
         }
         u64::from(self.max_edges)

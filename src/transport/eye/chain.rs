@@ -18,7 +18,7 @@ use embree::Ray;
 use glam::Vec3;
 use world::material::Bsdf;
 use world::shadow;
-use world::{Surface, World};
+use world::{Interior, Surface, World};
 
 /// Maximum number of pending branches. Each bounce adds at most two, one of which is followed at once.
 const PENDING: usize = 32;
@@ -83,6 +83,8 @@ struct ChainBranch {
     distance: f32,
     /// Start of the ray, if a sharp lobe sampled it.
     start: Option<LobeSample>,
+    /// Interior in which the ray starts.
+    interior: Interior,
 }
 
 /// Tracer of the chains of eye rays.
@@ -114,8 +116,10 @@ impl<'w> ChainTracer<'w> {
         let mut pending: [Option<ChainBranch>; PENDING] = [const { None }; PENDING];
         let mut waiting = 0;
         let (throughput, eta_sq, depth, edges, distance) = (Rgb::ONE, 1.0, 1, 1, 0.0);
-        let mut current = Some(ChainBranch { ray, throughput, eta_sq, depth, edges, distance, start: None });
-        while let Some(branch) = current.take().or_else(|| {
+        let (start, interior) = (None, Interior::NONE);
+        let mut current =
+            Some(ChainBranch { ray, throughput, eta_sq, depth, edges, distance, start, interior });
+        while let Some(mut branch) = current.take().or_else(|| {
             waiting = usize::checked_sub(waiting, 1)?;
             pending[waiting].take()
         }) {
@@ -139,11 +143,16 @@ impl<'w> ChainTracer<'w> {
             };
             let distance = branch.distance + surface.t;
             surface.footprint = branch.ray.direction * cone.width_at(distance);
+            let [of_emission, of_rest] = match world.absorbs() {
+                true => world.edge_shares(branch.interior, &surface, branch.ray.direction, branch.ray.t_near),
+                false => [Rgb::ONE; 2],
+            };
             let light = world.emitted(&surface, out);
             if light != Rgb::ZERO {
                 let weight = |start: LobeSample| start.weight_of_area(world, &surface, branch.ray.direction);
-                emitted += branch.throughput * light * branch.start.map_or(1.0, weight);
+                emitted += branch.throughput * of_emission * light * branch.start.map_or(1.0, weight);
             }
+            branch.throughput *= of_rest;
             let whole = world.bsdf(&surface);
             let (bsdf, sharp) = match whole.split_sharp_lobes() {
                 Some((bsdf, sharp)) if follow == Follow::DeltaAndSharp => (bsdf, Some(sharp)),
@@ -184,7 +193,8 @@ impl<'w> ChainTracer<'w> {
                 };
                 let depth = branch.depth + u32::from(!lobe.straight);
                 let edges = branch.edges + 1;
-                let next = ChainBranch { ray, throughput, eta_sq, depth, edges, distance, start };
+                let interior = world.interior_after(branch.interior, &surface, direction, lobe.straight);
+                let next = ChainBranch { ray, throughput, eta_sq, depth, edges, distance, start, interior };
                 if current.is_none() {
                     current = Some(next);
                 } else if waiting < PENDING {

@@ -158,7 +158,8 @@ impl Sharp<'_> {
         counts.shadow_rays += 1;
         let Surface { position, normal: own, .. } = *self.surface;
         if distance.is_finite() {
-            shadow::between(self.world, position, own, position + direction * distance, normal)
+            let share = self.world.share_from(self.surface, direction, distance);
+            share * shadow::between(self.world, position, own, position + direction * distance, normal)
         } else {
             shadow::arriving(self.world, &shadow::ray_from(position, own, direction))
         }

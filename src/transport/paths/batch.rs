@@ -88,7 +88,7 @@ impl Batch {
                 continue;
             }
             let surfaces = covered(world, &packet, &mut hits, found);
-            packet.add_emitted(world, &surfaces, found, policy, &mut self.radiance);
+            packet.arrive(world, &surfaces, found, policy, &mut self.radiance);
             let step = Step { depth, max_depth, kept: &mut kept };
             self.scatter(world, &mut packet, Hit { surfaces: &surfaces, found }, step, policy, counts);
         }
@@ -116,7 +116,7 @@ impl Batch {
                 continue;
             }
             let surfaces = covered(world, &packet, &mut hits, found);
-            packet.add_emitted(world, &surfaces, found, policy, &mut self.radiance);
+            packet.arrive(world, &surfaces, found, policy, &mut self.radiance);
             if max_depth <= 1 {
                 continue;
             }

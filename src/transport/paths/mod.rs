@@ -3,6 +3,7 @@
 //! [`start()`] adds paths to a [`Batch`] by the positions of their first edges in pixels ([`Estimand`]). The batch
 //! traces them with next-event estimation at every vertex.
 
+mod arrival;
 mod batch;
 mod counts;
 mod estimand;

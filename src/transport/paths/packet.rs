@@ -4,7 +4,7 @@ use super::counts::RayCounts;
 use base::math::{Cone, F32x16, LANES, Rgb, U32x16, Vec3x16, first_lanes, lanes_in, mask_of};
 use base::sampling::Samplers16;
 use embree::{Ray, Rays16};
-use world::World;
+use world::{Interior, World};
 
 /// Light that a path finds, in policies with [`super::PathPolicy::STOPS_AT_DIFFUSE`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -51,6 +51,8 @@ pub(super) struct Packet {
     pub sheets: U32x16,
     /// Cones around the edges.
     pub cones: [Cone; LANES],
+    /// Interiors in which the edges start.
+    pub interior: [Interior; LANES],
 }
 
 /// Light that arrives if its segment is unoccluded, collected until a packet is full.
@@ -82,6 +84,7 @@ impl Packet {
             stage: [PathStage::Chain as u32; LANES],
             sheets: [0; LANES],
             cones: [cone; LANES],
+            interior: [Interior::NONE; LANES],
         }
     }
 
@@ -103,6 +106,7 @@ impl Packet {
         self.stage[to] = packet.stage[from];
         self.sheets[to] = packet.sheets[from];
         self.cones[to] = packet.cones[from];
+        self.interior[to] = packet.interior[from];
     }
 
     /// Returns the lanes that have fewer than `max_depth` of `edges` edges, not counting sheets.

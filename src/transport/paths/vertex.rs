@@ -90,36 +90,6 @@ pub(super) fn segments(surfaces: &Surfaces16, lights: &DirectSamples16) -> Rays1
 }
 
 impl Packet {
-    /// Adds to `results` the emission of the surfaces hit in the lanes of `found`.
-    #[inline]
-    pub fn add_emitted<'w, R: PathPolicy<'w>>(
-        &self,
-        world: &World,
-        surfaces: &Surfaces16,
-        found: u16,
-        policy: &R,
-        results: &mut [Rgb],
-    ) {
-        let lit = lanes_in(found).filter(|i| world.emitters.is_light(surfaces.mesh[*i]));
-        let lit = lit.fold(0u16, |mask, i| mask | 1 << i);
-        if lit == 0 {
-            return;
-        }
-        let directions = self.rays.directions();
-        let mut cos = [0.0; LANES];
-        for i in 0..LANES {
-            cos[i] = surfaces.normal.get(i).dot(directions.get(i));
-        }
-        let start =
-            Receivers16 { position: &self.rays.origins(), normal: &self.normal, learned: policy.learned() };
-        let light_pdf = world.emitters.pdf_areas(start, &surfaces.mesh, &surfaces.t, &cos);
-        for i in lanes_in(lit) {
-            let emitted = world.emitted(&surfaces.get(i), -directions.get(i));
-            let weight = self.share_of_paths(i, emitted, policy) * self.weight_against(i, light_pdf[i]);
-            results[self.slot[i] as usize] += self.emission_throughput.get(i) * emitted * weight;
-        }
-    }
-
     /// Samples light and the next directions at the surfaces hit in the lanes of `found` by the edges with number
     /// `depth`. Calls `arrives` with each light sample: its segment, its radiance at the eye, and its result. Light
     /// that is known to arrive has no segment. Turns the paths into their continuations and returns the lanes that
@@ -259,6 +229,7 @@ impl Packet {
             self.rays.set(i, &shadow::ray_from(surfaces.position.get(i), surfaces.normal.get(i), direction));
         }
         found &= samples.going_on() & mask_of(&survives);
+        self.enter(world, surfaces, found, samples.straight());
         if let Some(before) = before {
             for i in lanes_in(found & samples.straight()) {
                 self.pass_sheet(i, &before, surfaces, samples.weight.get(i) / survivals[i]);
@@ -419,6 +390,12 @@ impl Packet {
             scattered[i] = u32::from((value.x != 0.0) | (value.y != 0.0) | (value.z != 0.0));
         }
         let segments = segments(surfaces, &lights);
+        if world.absorbs() {
+            for i in lanes_in(wanted) {
+                let share = world.share_from(&surfaces.get(i), lights.direction.get(i), lights.distance[i]);
+                radiance.set(i, radiance.get(i) * share);
+            }
+        }
         for i in lanes_in(wanted & mask_of(&scattered)) {
             arrives(Some(&segments.get(i)), radiance.get(i), self.slot[i]);
         }
@@ -428,22 +405,5 @@ impl Packet {
     fn leave_chain(&mut self, lane: usize, surfaces: &Surfaces16) {
         self.stage[lane] = PathStage::Scattered as u32;
         self.distance[lane] += surfaces.t[lane];
-    }
-
-    /// Returns the share of an emitter's radiance that a lane's path is to find.
-    #[inline]
-    pub fn share_of_paths<'w, R: PathPolicy<'w>>(&self, lane: usize, radiance: Rgb, policy: &R) -> f32 {
-        match self.stage[lane] == PathStage::Bent as u32 {
-            true => policy.share_of_paths(radiance, self.distance[lane]),
-            false => 1.0,
-        }
-    }
-
-    /// Returns the MIS weight of a lane that hit a light by its edge, against light sampling of the given density.
-    #[inline]
-    pub fn weight_against(&self, lane: usize, light_pdf: f32) -> f32 {
-        let pdf = self.pdf[lane];
-        let light_pdf = self.light_samples[lane] * light_pdf;
-        if pdf == f32::INFINITY { 1.0 } else { power_heuristic(pdf, light_pdf) }
     }
 }

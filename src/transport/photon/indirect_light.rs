@@ -13,7 +13,7 @@ use base::stats::add_fields;
 use glam::Vec3;
 use std::f32::consts::FRAC_1_PI;
 use world::shadow;
-use world::{Surface, World};
+use world::{Interior, Surface, World};
 
 /// Maximum number of surfaces that a ray is followed through.
 const MAX_EDGES: u32 = 8;
@@ -43,7 +43,9 @@ pub struct IndirectLight<'w> {
 
 impl IndirectLight<'_> {
     /// Returns the radiance that a surface, hit along `direction` at `distance`, reflects back. Also returns the albedo
-    /// of the reflection that is still missing because the surface is too near for the map; 0 if none is.
+    /// of the reflection that is still missing because the surface is too near for the map; 0 if none is. Calls
+    /// `behind` with every surface that the ray meets behind sheets, or with nothing, and with the share of the light
+    /// from there.
     #[inline]
     pub(super) fn sent(
         &self,
@@ -52,9 +54,13 @@ impl IndirectLight<'_> {
         distance: f32,
         sampler: &mut Sampler,
         counts: &mut GatherCounts,
+        mut behind: impl FnMut(Option<&Surface>, Rgb),
     ) -> (Rgb, Rgb) {
         let (mut radiance, mut throughput, mut near) = (Rgb::ZERO, Rgb::ONE, Rgb::ZERO);
-        let mut surface = *first;
+        let (mut surface, mut interior) = (*first, Interior::NONE);
+        if self.world.absorbs() {
+            throughput = self.world.edge_shares(interior, first, direction, 0.0)[1];
+        }
         for edge in 0..MAX_EDGES {
             let bsdf = self.world.bsdf(&surface);
             let out = surface.frame.to_local(-direction);
@@ -75,7 +81,15 @@ impl IndirectLight<'_> {
             direction = surface.frame.to_world(s.wi);
             counts.followed += 1;
             let ray = shadow::ray_from(surface.position, surface.normal, direction);
-            let Some(next) = self.world.intersect(&ray) else { break };
+            let next = self.world.intersect(&ray);
+            interior = self.world.interior_after(interior, &surface, direction, true);
+            let [of_emission, of_rest] = match &next {
+                Some(next) if self.world.absorbs() => self.world.edge_shares(interior, next, direction, 0.0),
+                _ => [Rgb::ONE; 2],
+            };
+            behind(next.as_ref(), throughput * of_emission);
+            throughput *= of_rest;
+            let Some(next) = next else { break };
             surface = next;
         }
         (radiance, near)

@@ -186,8 +186,13 @@ impl IndirectLight<'_> {
                 radiance[lane] += throughput * emitted * power_heuristic(pdf[lane], other);
             }
             let resolved = if last { f32::INFINITY } else { hits.t[lane] };
-            let (sent, albedo) = self.sent(&surface, direction, resolved, &mut samplers[lane], counts);
-            radiance[lane] += throughput * sent;
+            let mut emitted = Rgb::ZERO;
+            let behind = |met: Option<&Surface>, passed: Rgb| {
+                emitted += passed * self.emitted_behind(near, met, direction, pdf[lane], lane);
+            };
+            let (sent, albedo) =
+                self.sent(&surface, direction, resolved, &mut samplers[lane], counts, behind);
+            radiance[lane] += throughput * (sent + emitted);
             if albedo != Rgb::ZERO {
                 again.set(lane, &surface, direction, throughput * albedo);
             }
@@ -206,6 +211,32 @@ impl IndirectLight<'_> {
             let weight = power_heuristic(pdf[lane], other * choice[lane]);
             radiance[lane] += near.throughput.get(lane) * light * weight;
         }
+    }
+
+    /// Returns the MIS-weighted emission of a surface behind sheets, or of the environment if nothing is there, along a
+    /// ray with the density `pdf`. Emitters are sampled through sheets, too.
+    fn emitted_behind(
+        &self,
+        near: &NearHits,
+        met: Option<&Surface>,
+        direction: Vec3,
+        pdf: f32,
+        lane: usize,
+    ) -> Rgb {
+        let emitters = &self.world.emitters;
+        let (emitted, other) = match (met, &emitters.environment) {
+            (Some(surface), _) if emitters.is_light(surface.mesh) => {
+                let t = surface.position.distance(near.position.get(lane));
+                let other = self.density(near, &Surface { t, ..*surface }, direction, lane);
+                (self.world.emitted(surface, -direction), other)
+            }
+            (None, Some(environment)) => {
+                let (radiance, other) = environment.radiance_pdf(direction);
+                (radiance, other * emitters.environment_choice(near.receivers())[lane])
+            }
+            _ => return Rgb::ZERO,
+        };
+        emitted * power_heuristic(pdf, other)
     }
 
     /// Returns the density with which sampling of emitters from a lane would choose a point of an emitter.

@@ -42,7 +42,7 @@ impl IndirectLight<'_> {
             let surface = self.world.surface(&hit);
             let direction = rays.get(lane).direction;
             let mut sampler = Sampler::new(seed, lane as u32);
-            let (sent, albedo) = self.sent(&surface, direction, hit.t, &mut sampler, counts);
+            let (sent, albedo) = self.sent(&surface, direction, hit.t, &mut sampler, counts, |_, _| {});
             radiance[lane] = sent;
             if albedo != Rgb::ZERO {
                 near.set(lane, &surface, direction, albedo);

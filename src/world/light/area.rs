@@ -1,59 +1,30 @@
 //! Area lights: the emitting triangles of one mesh, sampled uniformly by area.
 
 use super::distribution::DiscreteDistribution;
+use super::factor::EmissionFactor;
 use base::math::{F32x16, Rgb, U32x16, luminance};
 use base::sampling::uniform_triangle;
 use glam::{Vec2, Vec3};
-use scene::{Emission, Scene, Texture, TextureId, Textures};
+use scene::{AttributeTexture, Emission, Mesh, Scene, Share, Texture, TextureId};
 
 /// A mesh that emits.
 #[derive(Clone, Debug)]
 pub struct AreaLight {
     /// Index of the mesh.
     pub mesh: u32,
-    /// Emission of the mesh.
+    /// Emission of the mesh, times its opacity if that is the same everywhere.
     pub emission: Emission,
     /// Total area of the triangles.
     pub area: f32,
-    /// Flux of all emitting sides as luminance, W; the mean of a texture represents it.
+    /// Flux of all emitting sides as luminance, W; the mean of texture times opacity represents it.
     pub power: f32,
-    /// Maximum radiance of any channel at any point.
+    /// Maximum radiance of any channel at any point, if the mesh were opaque.
     greatest: f32,
     triangles: DiscreteDistribution,
     /// First corner, two edges and unit normal of each triangle.
     shapes: Vec<[Vec3; 4]>,
-    /// Texture of the emission, if there is one.
-    texture: Option<EmissionTexture>,
-}
-
-/// Texture that scales the emission of a mesh.
-#[derive(Clone, Debug)]
-struct EmissionTexture {
-    textures: Textures,
-    id: TextureId,
-    /// Texture coordinates of each triangle's corners; empty if the mesh has none.
-    uvs: Vec<[Vec2; 3]>,
-}
-
-impl EmissionTexture {
-    /// Collects the texture coordinates of mesh `index`.
-    fn new(scene: &Scene, index: u32, id: TextureId) -> EmissionTexture {
-        let mesh = &scene.meshes[index as usize];
-        let uvs = match mesh.uvs.as_slice() {
-            [] => Vec::new(),
-            uvs => mesh.triangles.iter().map(|vertices| vertices.map(|i| uvs[i as usize])).collect(),
-        };
-        EmissionTexture { textures: scene.textures.clone(), id, uvs }
-    }
-
-    /// Returns the factor on the emission at barycentric weights `b` of a triangle.
-    fn factor(&self, triangle: u32, b: Vec2) -> Rgb {
-        let uv = match self.uvs.get(triangle as usize) {
-            Some([u0, u1, u2]) => *u0 * (1.0 - b.x - b.y) + *u1 * b.x + *u2 * b.y,
-            None => b,
-        };
-        self.textures.lookup(self.id, uv)
-    }
+    /// Factor that varies over the mesh, if there is one.
+    factor: Option<EmissionFactor>,
 }
 
 /// A point on an area light.
@@ -87,18 +58,30 @@ impl AreaLight {
     /// Builds the light of mesh `index`; `None` if it emits nothing.
     pub fn new(scene: &Scene, index: u32) -> Option<AreaLight> {
         let mesh = &scene.meshes[index as usize];
-        let emission = mesh.emission?;
+        let mut emission = mesh.emission?;
         let shapes: Vec<(Vec3, f32)> =
             (0..mesh.triangles.len()).map(|t| normal_and_area(mesh.corners(t))).collect();
         let triangles = DiscreteDistribution::new(shapes.iter().map(|s| s.1));
         let area = triangles.total() as f32;
-        let (mean_texture, greatest) = emission.texture.map_or((Rgb::ONE, Rgb::ONE), |t| {
-            let Some(Texture { texels, .. }) = scene.textures.by_id(t) else { return (Rgb::ONE, Rgb::ONE) };
-            let mean = texels.iter().sum::<Rgb>() / texels.len().max(1) as f32;
-            (mean, texels.iter().fold(Rgb::ZERO, Rgb::max))
-        });
+        if !(area > 0.0) {
+            return None;
+        }
+        let (mean_texture, greatest) =
+            emission.texture.map_or((Rgb::ONE, Rgb::ONE), |texture| mean_and_greatest(scene, mesh, texture));
+        let greatest = (emission.radiance * greatest).max_element();
+        // Gaps do not shine.
+        let material = scene.materials.get(mesh.material.0 as usize);
+        let opacity = material.and_then(|material| material.opacity);
+        if let Some(Share::Constant(share)) = opacity {
+            emission.radiance *= share.clamp(0.0, 1.0);
+        }
+        let factor = EmissionFactor::new(scene, mesh, emission.texture, opacity);
+        let mean = match &factor {
+            Some(factor) if factor.has_opacity() => factor.mean_over(&triangles, mean_texture),
+            _ => mean_texture,
+        };
         let sides = if emission.two_sided { 2.0 } else { 1.0 };
-        let power = luminance(emission.radiance * mean_texture) * area * std::f32::consts::PI * sides;
+        let power = luminance(emission.radiance * mean) * area * std::f32::consts::PI * sides;
         if !(power > 0.0 && power.is_finite()) {
             return None;
         }
@@ -107,8 +90,8 @@ impl AreaLight {
             emission,
             area,
             power,
-            greatest: (emission.radiance * greatest).max_element(),
-            texture: emission.texture.map(|id| EmissionTexture::new(scene, index, id)),
+            greatest,
+            factor,
             triangles,
             shapes: (0..mesh.triangles.len())
                 .map(|t| {
@@ -147,7 +130,7 @@ impl AreaLight {
         self.triangles.sample16(u)
     }
 
-    /// Returns emitted radiance relative to the maximum of the light, from 0 to 1.
+    /// Returns emitted radiance relative to the maximum of the light, if it were opaque, from 0 to 1.
     pub fn relative(&self, emitted: Rgb) -> Rgb {
         (emitted / self.greatest).min(Rgb::ONE)
     }
@@ -157,26 +140,52 @@ impl AreaLight {
         &self.shapes
     }
 
-    /// Returns the factor of the texture on the emission at a point of a triangle.
+    /// Returns true if the radiance varies over the mesh.
     #[inline]
-    pub(super) fn texture(&self, triangle: u32, barycentric: Vec2) -> Rgb {
-        self.texture.as_ref().map_or(Rgb::ONE, |texture| texture.factor(triangle, barycentric))
+    pub(super) fn varies(&self) -> bool {
+        self.factor.is_some()
+    }
+
+    /// Returns the factor on the emission at a point of a triangle.
+    #[inline]
+    pub(super) fn factor(&self, triangle: u32, barycentric: Vec2) -> Rgb {
+        self.factor.as_ref().map_or(Rgb::ONE, |factor| factor.at(triangle, barycentric))
     }
 
     /// Returns the radiance that leaves a point of the light towards the unit vector `out`.
     #[inline]
     pub fn radiance(&self, point: &AreaPoint, out: Vec3) -> Rgb {
-        let factor = |_| self.texture(point.triangle, point.barycentric);
-        emitted(&self.emission, point.normal, out, factor)
+        self.emitted(point.triangle, point.barycentric, point.normal, out)
+    }
+
+    /// Returns the radiance that leaves a triangle towards the unit vector `out`. The point is given by barycentric
+    /// weights of corners 1 and 2, and by the unit geometric normal there.
+    #[inline]
+    pub fn emitted(&self, triangle: u32, barycentric: Vec2, normal: Vec3, out: Vec3) -> Rgb {
+        if !self.emission.two_sided && normal.dot(out) <= 0.0 {
+            return Rgb::ZERO;
+        }
+        self.emission.radiance * self.factor(triangle, barycentric)
     }
 }
 
-/// Returns the radiance that a point of an emitter with the geometric normal `normal` emits towards `out`. `factor`
-/// looks the texture up.
-#[inline]
-pub fn emitted(emission: &Emission, normal: Vec3, out: Vec3, factor: impl FnOnce(TextureId) -> Rgb) -> Rgb {
-    if !emission.two_sided && normal.dot(out) <= 0.0 {
-        return Rgb::ZERO;
-    }
-    emission.radiance * emission.texture.map_or(Rgb::ONE, factor)
+/// Returns the mean of a texture on a mesh, and the maximum of each channel. Those of a product are products.
+fn mean_and_greatest(scene: &Scene, mesh: &Mesh, texture: TextureId) -> (Rgb, Rgb) {
+    let Some(AttributeTexture { attribute, image }) = scene.textures.attribute(texture) else {
+        return of_texels(scene, texture);
+    };
+    let (mean, greatest) = image.map_or((Rgb::ONE, Rgb::ONE), |image| of_texels(scene, image));
+    let Some(found) = mesh.attributes.iter().find(|found| found.id == *attribute) else {
+        return (mean, greatest);
+    };
+    let (sum, area) = mesh.integrate_attribute(*attribute);
+    let of_attribute = found.values.all().iter().copied().fold(Rgb::ZERO, Rgb::max);
+    (mean * (sum / area).as_vec3(), greatest * of_attribute)
+}
+
+/// Returns the mean of an image's texels, and the maximum of each channel.
+fn of_texels(scene: &Scene, image: TextureId) -> (Rgb, Rgb) {
+    let Some(Texture { texels, .. }) = scene.textures.by_id(image) else { return (Rgb::ONE, Rgb::ONE) };
+    let mean = texels.iter().sum::<Rgb>() / texels.len().max(1) as f32;
+    (mean, texels.iter().fold(Rgb::ZERO, Rgb::max))
 }

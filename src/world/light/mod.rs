@@ -11,6 +11,9 @@ mod direct;
 mod distribution;
 mod emitters;
 mod environment;
+mod factor;
+#[cfg(test)]
+mod factor_tests;
 mod falloff;
 mod image;
 #[cfg(test)]
@@ -25,7 +28,7 @@ mod tests;
 mod tree;
 mod triangles;
 
-pub use area::{AreaLight, AreaPoint, emitted};
+pub use area::{AreaLight, AreaPoint};
 pub use delta::DeltaEmitter;
 pub use direct::{DirectSample, DirectSamples16};
 pub use distribution::DiscreteDistribution;

@@ -90,19 +90,19 @@ impl Emitters {
         samples: &mut DirectSamples16,
     ) {
         let mut triangles = Triangles16::default();
-        let (mut textured, mut left) = (0, wanted);
+        let (mut varying, mut left) = (0, wanted);
         while left != 0 {
             let index = chosen[left.trailing_zeros() as usize];
             let lanes = left & lanes_with(chosen, index);
             left &= !lanes;
             let light = &self.areas[index as usize];
-            textured |= if light.emission.texture.is_some() { lanes } else { 0 };
+            varying |= if light.varies() { lanes } else { 0 };
             triangles.choose(lanes, light, u);
         }
         triangles.sample(at.position, choice, samples);
-        for lane in lanes_in(textured) {
+        for lane in lanes_in(varying) {
             let light = &self.areas[chosen[lane] as usize];
-            let factor = light.texture(triangles.index[lane], triangles.barycentric.get(lane));
+            let factor = light.factor(triangles.index[lane], triangles.barycentric.get(lane));
             let radiance = samples.radiance.get(lane) * factor;
             samples.radiance.set(lane, radiance);
             samples.useful[lane] &= u32::from(radiance != Rgb::ZERO);

@@ -53,9 +53,11 @@ fn lamp(position: Vec3, direction: Vec3, size: f32, radiance: Rgb, two_sided: bo
         positions: vec![position, position + a, position + b, position + a + b + 0.3 * size * direction],
         normals: Vec::new(),
         uvs: Vec::new(),
+        tangents: Vec::new(),
         triangles: vec![[0, 1, 2], [2, 1, 3]],
         material: MaterialId(0),
         emission: Some(Emission { radiance, texture: None, two_sided }),
+        attributes: Vec::new(),
     }
 }
 

@@ -4,13 +4,13 @@ use super::base::CoatInterface;
 use super::colours::ColourSource;
 use super::layers::Layers;
 use super::lobe::{DIFFUSE_ALPHA, LobeModel, MAX_LOBES};
+use super::means::TextureMeans;
 use super::model::{Bsdf, Colours, LobeKinds, Model};
 use super::roughness::{RoughnessLevel, RoughnessLevels, RoughnessValues};
 use super::straight::Straight;
 use super::tables::Tables;
 use base::math::Rgb;
-use rayon::prelude::*;
-use scene::{Fresnel, Material, MaterialId, Share, Texture, TextureId, Textures};
+use scene::{Fresnel, Material, MaterialId, Scene, Share, TextureId};
 
 /// Material of the scene, prepared to be looked up at points.
 #[derive(Clone, Debug)]
@@ -28,7 +28,7 @@ pub(super) struct MaterialEntry {
     /// Texture that a lookup reads first, if any.
     pub first_texture: Option<TextureId>,
     /// Textures that may be averaged, because the reflected light is linear in their texels; none if roughness, relief
-    /// or opacity are textured, too.
+    /// or opacity are textured, too, or a texture is a product of an image and an attribute.
     pub filtered: Vec<TextureId>,
 }
 
@@ -68,9 +68,8 @@ impl ColouredModel {
 
 /// Builder of the materials of a scene.
 pub(super) struct Builder<'a> {
-    textures: &'a Textures,
-    /// Means of the textures.
-    means: Vec<Rgb>,
+    scene: &'a Scene,
+    means: TextureMeans,
     tables: Tables,
     /// Every distinct coat; the first stands for none.
     pub coats: Vec<CoatInterface>,
@@ -79,11 +78,11 @@ pub(super) struct Builder<'a> {
 }
 
 impl<'a> Builder<'a> {
-    /// Prepares to build materials that use `textures`.
-    pub fn new(textures: &'a Textures) -> Builder<'a> {
+    /// Prepares to build materials of `scene`.
+    pub fn new(scene: &'a Scene) -> Builder<'a> {
         Builder {
-            textures,
-            means: textures.par_iter().map(Texture::mean).collect(),
+            scene,
+            means: TextureMeans::new(scene),
             tables: Tables::default(),
             coats: vec![CoatInterface::None],
             lobe_lists: Vec::new(),
@@ -92,10 +91,10 @@ impl<'a> Builder<'a> {
 
     /// Builds a material.
     pub fn entry(&mut self, material: &Material, id: MaterialId) -> MaterialEntry {
-        let levels = RoughnessLevels::of(material, self.textures);
+        let levels = RoughnessLevels::of(material, self.scene);
         let (mut model, source) = self.model(material, id, None);
         model.mean_roughness = levels.is_some();
-        let mean = |id: TextureId| self.means.get(id.0 as usize).copied().unwrap_or(Rgb::ONE);
+        let mean = |id: TextureId| self.means.of(id);
         let average = source.colours(&model.base, &mean);
         let textures = source.textures(&model.base);
         let is_textured = levels.is_some() || source.is_textured();
@@ -103,7 +102,12 @@ impl<'a> Builder<'a> {
         let passes_gaps_alone =
             model.lobes.iter().all(|lobe| matches!(lobe, LobeModel::Gap) || !lobe.passes_straight());
         let opacity = source.opacity.filter(|_| is_textured && passes_gaps_alone).map(|(share, _)| share);
-        let is_linear = source.layers.is_linear(&model.base) && has_one_textured_factor(material);
+        let is_product = |id: &TextureId| {
+            self.scene.textures.attribute(*id).is_some_and(|texture| texture.image.is_some())
+        };
+        let is_linear = source.layers.is_linear(&model.base)
+            && has_one_textured_factor(material)
+            && !textures.iter().any(is_product);
         let first_texture = match &levels {
             Some(levels) => Some(levels.texture),
             None => textures.first().copied(),

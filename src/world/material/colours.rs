@@ -4,7 +4,7 @@ use super::base::BaseModel;
 use super::lobe::MAX_LOBES;
 use super::model::Colours;
 use super::principled::PrincipledColours;
-use base::math::{Rgb, luminance};
+use base::math::Rgb;
 use scene::{Reflectance, Share, TextureId};
 use std::cell::RefCell;
 
@@ -26,7 +26,7 @@ impl ColourSource {
     pub fn colours(&self, base: &BaseModel, texel: &dyn Fn(TextureId) -> Rgb) -> Colours<Rgb> {
         let mut colours = self.layers.colours(base, texel);
         if let Some((opacity, gap)) = self.opacity {
-            let share = opaque(&opacity, texel);
+            let share = opacity.share(texel);
             colours.base *= share;
             colours.scales.iter_mut().for_each(|scale| *scale *= share);
             colours.scales[gap] = Rgb::splat(1.0 - share);
@@ -43,11 +43,6 @@ impl ColourSource {
         });
         textures.into_inner()
     }
-}
-
-/// Returns the share of a surface that is there; `texel` returns the value of a texture.
-pub(super) fn opaque(opacity: &Share, texel: impl Fn(TextureId) -> Rgb) -> f32 {
-    opacity.value(|id| luminance(texel(id))).clamp(0.0, 1.0)
 }
 
 /// Colours of base and lobes before textures are looked up.
@@ -114,7 +109,7 @@ impl LayerColours {
                 Colours { base: base.brdf(colours.base), ..colours }
             }
             LayerColours::Blend(blend) => {
-                let weight = blend.weight.value(|id| luminance(texel(id))).clamp(0.0, 1.0);
+                let weight = blend.weight.share(texel);
                 let [mut mixed, other] =
                     blend.parts.each_ref().map(|(colours, base)| colours.colours(base, texel));
                 mixed.base = mixed.base.lerp(other.base, weight);

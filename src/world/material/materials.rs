@@ -2,13 +2,12 @@
 
 use super::base::CoatInterface;
 use super::build::{Builder, Colouring, MaterialEntry};
-use super::colours::opaque;
 use super::model::{Bsdf, Model};
 use super::straight::LastStraight;
 use base::math::{Rgb, luminance};
 use glam::Vec2;
 use scene::texture::MipMaps;
-use scene::{MaterialId, Scene, Texture, TextureId};
+use scene::{AttributeId, MaterialId, Scene, Texture, TextureId};
 
 /// Materials of a scene, with the textures that they look up.
 #[derive(Clone, Debug)]
@@ -23,7 +22,7 @@ pub struct Materials {
 impl Materials {
     /// Prepares every material of the scene.
     pub fn new(scene: &Scene) -> Materials {
-        let mut builder = Builder::new(&scene.textures);
+        let mut builder = Builder::new(scene);
         let ids = (0..).map(MaterialId);
         let entries: Vec<MaterialEntry> =
             scene.materials.iter().zip(ids).map(|(material, id)| builder.entry(material, id)).collect();
@@ -77,28 +76,29 @@ impl Materials {
         }
     }
 
-    /// Returns the material at texture coordinates `uv`.
+    /// Returns the material at texture coordinates `uv`, with white attributes.
     #[inline]
     pub fn at(&self, id: MaterialId, uv: Vec2) -> Bsdf<'_> {
-        self.at_coordinates(id, || uv, || 0.0)
+        self.at_coordinates(id, || uv, || 0.0, |_| Rgb::ONE)
     }
 
     /// Returns the material at the texture coordinates that `uv` returns, which is called only if something is
     /// textured. Textures are averaged over a square around them, of the side that `covered` returns, if the mean of
-    /// the reflected light stays the same.
+    /// the reflected light stays the same. `attribute` returns the value of an attribute.
     #[inline]
     pub fn at_coordinates(
         &self,
         id: MaterialId,
         uv: impl FnOnce() -> Vec2,
         covered: impl FnOnce() -> f32,
+        attribute: impl Fn(AttributeId) -> Rgb,
     ) -> Bsdf<'_> {
         let entry = &self.entries[id.0 as usize];
         match &entry.coloured.colours {
             Colouring::Constant(colours) => entry.coloured.model.with_colours(colours),
             Colouring::Textured(_) => {
                 let covered = if entry.filtered.is_empty() { 0.0 } else { covered() };
-                self.textured(entry, uv(), covered)
+                self.textured(entry, uv(), covered, attribute)
             }
         }
     }
@@ -110,18 +110,32 @@ impl Materials {
     }
 
     /// Returns the material of the mean texels over places. Each is given by texture coordinates and the side of the
-    /// square that it covers.
+    /// square that it covers. `attribute` returns the value of an attribute at the place of an index.
     #[inline]
-    pub fn mean(&self, id: MaterialId, places: &[(Vec2, f32)]) -> Bsdf<'_> {
+    pub fn mean(
+        &self,
+        id: MaterialId,
+        places: &[(Vec2, f32)],
+        attribute: impl Fn(usize, AttributeId) -> Rgb,
+    ) -> Bsdf<'_> {
         let texel = |id: TextureId| {
-            let sum: Rgb = places.iter().map(|(uv, covered)| self.textures.lookup(id, *uv, *covered)).sum();
+            let at = |(i, (uv, covered)): (usize, &(Vec2, f32))| {
+                self.textures.lookup(id, *uv, *covered, |found| attribute(i, found))
+            };
+            let sum: Rgb = places.iter().enumerate().map(at).sum();
             sum / places.len() as f32
         };
         self.entries[id.0 as usize].coloured.bsdf(&texel)
     }
 
-    fn textured<'m>(&'m self, entry: &'m MaterialEntry, uv: Vec2, covered: f32) -> Bsdf<'m> {
-        let texel = |id: TextureId| self.textures.lookup(id, uv, covered);
+    fn textured<'m>(
+        &'m self,
+        entry: &'m MaterialEntry,
+        uv: Vec2,
+        covered: f32,
+        attribute: impl Fn(AttributeId) -> Rgb,
+    ) -> Bsdf<'m> {
+        let texel = |id: TextureId| self.textures.lookup(id, uv, covered, &attribute);
         let coloured = match &entry.levels {
             Some(levels) => &levels.models[levels.levels.index(luminance(texel(levels.levels.texture)))],
             None => &entry.coloured,
@@ -138,13 +152,15 @@ impl Materials {
     /// Returns the share of the light that passes straight through a surface.
     ///
     /// `cos` returns the cosine to the shading normal, of either sign, and is called only if the share depends on it.
-    /// `uv` returns texture coordinates. `last` remembers the surface before.
+    /// `uv` returns texture coordinates, and `attribute` the value of an attribute. `last` remembers the surface
+    /// before.
     #[inline]
     pub fn straight_transmittance(
         &self,
         id: MaterialId,
         cos: impl FnOnce() -> f32,
         uv: impl FnOnce() -> Vec2,
+        attribute: impl Fn(AttributeId) -> Rgb,
         last: &mut Option<LastStraight>,
     ) -> Rgb {
         let entry = &self.entries[id.0 as usize];
@@ -154,9 +170,9 @@ impl Materials {
         match &entry.opacity {
             Some(opacity) => {
                 let uv = uv();
-                Rgb::splat(1.0 - opaque(opacity, |id| self.textures.textures().lookup(id, uv)))
+                Rgb::splat(1.0 - opacity.share(|id| self.textures.textures().lookup(id, uv, &attribute)))
             }
-            None => self.at_coordinates(id, uv, || 0.0).straight_transmittance(cos()),
+            None => self.at_coordinates(id, uv, || 0.0, attribute).straight_transmittance(cos()),
         }
     }
 

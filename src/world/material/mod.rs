@@ -6,10 +6,10 @@
 //! `roughplastic`, `conductor`, `roughconductor`, `dielectric`, `roughdielectric`, `principled`,
 //! `principledthin`, `mask` and `twosided`.
 //!
-//! Files use only files before them in this order: `microfacet`, `fresnel`, `table` and `albedo`; `base` and `lobe`
-//! (one file per lobe); `model` and `lobe_set` (data); `bsdf`, `sample`, `bound`, `packet`, `alike16`, `prepared`,
-//! `mean` and `straight` (evaluation); `colours`, `layers` and `build` (from the scene's materials); `materials`
-//! (lookup).
+//! Files use only files before them in this order: `microfacet`, `fresnel`, `table` and `albedo`; `means`; `base` and
+//! `lobe` (one file per lobe); `model` and `lobe_set` (data); `bsdf`, `sample`, `bound`, `packet`, `alike16`,
+//! `prepared`, `mean` and `straight` (evaluation); `colours`, `layers` and `build` (from the scene's materials);
+//! `materials` (lookup).
 //!
 //! All directions are in the local shading frame (z = shading normal), point away from the surface and have unit
 //! length: `wo` towards the eye or the previous vertex of the path, `wi` towards the light.
@@ -27,6 +27,7 @@ mod lobe;
 mod lobe_set;
 mod materials;
 mod mean;
+mod means;
 mod microfacet;
 mod model;
 mod packet;

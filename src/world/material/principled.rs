@@ -62,6 +62,8 @@ struct PrincipledValues {
     clearcoat: f32,
     /// Share of the diffuse light that a sheet transmits; `None` for other surfaces.
     thin: Option<f32>,
+    /// Factor on transmitted light.
+    tint: Rgb,
 }
 
 impl PrincipledValues {
@@ -80,6 +82,10 @@ impl PrincipledValues {
             sheen_tint: share(&p.sheen_tint),
             clearcoat: share(&p.clearcoat),
             thin: p.thin.as_ref().map(share),
+            tint: match p.tints_each_passage {
+                true => colour,
+                false => Rgb::from_array(colour.to_array().map(f32::sqrt)),
+            },
         }
     }
 
@@ -116,9 +122,7 @@ impl PrincipledValues {
             PrincipledLobe::HuedEdge => Rgb::splat(self.hued_edge() * self.specular()),
             PrincipledLobe::ThinRough => self.colour * self.spec_trans,
             PrincipledLobe::ThinDiffuse => self.colour * ((1.0 - self.spec_trans) * self.thin.unwrap_or(0.0)),
-            PrincipledLobe::Transmission => {
-                Rgb::from_array(self.colour.to_array().map(f32::sqrt)) * transmitted
-            }
+            PrincipledLobe::Transmission => self.tint * transmitted,
             PrincipledLobe::Inside => Rgb::splat(transmitted),
             PrincipledLobe::Retro => self.diffuse(),
             PrincipledLobe::ClearCoat => Rgb::splat(self.clearcoat),

@@ -5,8 +5,9 @@
 //! 0.5 in a texture of α², or at 0.18 in a texture of α. The tables of the coat are made for every eighth level. Values
 //! below 1/1024 are clamped to it. The roughness of other lobes is the mean of its texture.
 
-use base::math::{Rgb, luminance};
-use scene::{Lobe, Material, Roughness, TextureId, Textures};
+use super::means::TextureMeans;
+use base::math::luminance;
+use scene::{Lobe, Material, Roughness, Scene, TextureId};
 use std::ops::RangeInclusive;
 
 /// Number of levels between a value and its double.
@@ -49,7 +50,7 @@ pub(super) struct RoughnessLevels {
 
 impl RoughnessLevels {
     /// Returns the levels of the first textured roughness of `material`, if there is any.
-    pub fn of(material: &Material, textures: &Textures) -> Option<RoughnessLevels> {
+    pub fn of(material: &Material, scene: &Scene) -> Option<RoughnessLevels> {
         let textured = |roughness: &Roughness| match roughness {
             Roughness::Textured { texture, .. } => Some(*texture),
             Roughness::Constant(_) => None,
@@ -63,8 +64,14 @@ impl RoughnessLevels {
             None => part.lobes.iter().find_map(of_lobe),
         };
         let texture = material.parts().find_map(of_part)?;
-        let texels = &textures.by_id(texture)?.texels;
-        let levels = || texels.iter().map(|texel| RoughnessLevel::of(luminance(texel)).0);
+        let Some(image) = scene.textures.by_id(texture) else {
+            let (low, high) = scene.luminance_range(texture)?;
+            return Some(RoughnessLevels {
+                texture,
+                range: RoughnessLevel::of(low).0..=RoughnessLevel::of(high).0,
+            });
+        };
+        let levels = || image.texels.iter().map(|texel| RoughnessLevel::of(luminance(texel)).0);
         Some(RoughnessLevels { texture, range: levels().min()?..=levels().max()? })
     }
 
@@ -84,8 +91,7 @@ impl RoughnessLevels {
 /// Values of textured roughness while a model is built.
 #[derive(Clone, Copy)]
 pub(super) struct RoughnessValues<'a> {
-    /// Means of the scene's textures.
-    pub means: &'a [Rgb],
+    pub means: &'a TextureMeans,
     /// Texture whose level is known, and the level.
     pub level: Option<(TextureId, RoughnessLevel)>,
 }
@@ -95,7 +101,7 @@ impl RoughnessValues<'_> {
     pub fn alpha(&self, roughness: &Roughness) -> f32 {
         roughness.value(|texture| match self.level {
             Some((known, level)) if known == texture => level.value(),
-            _ => self.means.get(texture.0 as usize).map_or(1.0, |mean| luminance(*mean)),
+            _ => luminance(self.means.of(texture)),
         })
     }
 

@@ -6,9 +6,11 @@
 //! how many it tried. Files that fail go to `tests/scenes/fuzzed`, whose files are tried in every run. A case that ends
 //! the process, for it takes more than [`MAX_BYTES`] or [`MAX_SECONDS`], is left in `target/tmp/fuzz`.
 
+mod additions;
 mod mutate;
 mod seeds;
 mod target;
+mod unknown;
 
 use cap::Cap;
 use lightsplat::stats::{StageTime, Stopwatch};

@@ -2,6 +2,8 @@
 
 #[path = "../../../src/readers/gltf/tests/model.rs"]
 mod model;
+#[path = "../../../src/readers/gltf/tests/packed.rs"]
+mod packed;
 #[path = "../../../src/readers/gltf/tests/samples.rs"]
 mod samples;
 
@@ -68,7 +70,7 @@ pub fn of(target: &str) -> Vec<Seed> {
     match target {
         "toml" => valid("toml"),
         "xml" => valid("xml"),
-        "obj" => valid("obj"),
+        "obj" => valid("obj").into_iter().chain(vec![Seed::plain("obj", ALL_OF_OBJ)]).collect(),
         "mtl" => valid("mtl").into_iter().chain(vec![Seed::plain("mtl", ALL_OF_MTL)]).collect(),
         "ply" => valid("ply").into_iter().chain(vec![binary_ply(true), binary_ply(false)]).collect(),
         "serialized" => valid("serialized").into_iter().chain(vec![inflated(3), inflated(4)]).collect(),
@@ -88,9 +90,17 @@ pub fn of(target: &str) -> Vec<Seed> {
     }
 }
 
+const ALL_OF_OBJ: &str = "mtllib no.mtl roof.mtl my roof.mtl # both\nv 0 0 0 # a\nv 1 0 \\\n 0\nv 0 1 0 1\nv 0 0 1\n\
+    vt 0 0\nvt 1 0\nvt 0 1 0\nvn 0 0 1\ns 1\no a b\ng c d # e\nusemtl slab # f\nf 1/1/1 2/2/1 \\\n 3/3/1 # g\n\
+    l 1 2\np 1\ncurv 0 1 1 2\nusemtl none\nfo -4 -3 -1 -2\nf 1/1 2//1 4\nsurf 0 1 0 1 1\nend\nbevel on\nlod 3\n";
+
 const ALL_OF_MTL: &str = "newmtl slab\nKd 0.6 0.6 0.5\nKe 1 2 3\nmap_Ke tile.png\nd 0.5\nmap_d tile.png\nillum 1\n\
     newmtl tiles\nKd 0\nKs 0.9 0.7 0.4\nNs 98\nNi 1.4\nTr 0.25\nillum 2\nmap_Kd -s 2 2 1 tile.png\nmap_bump x.png\n\
-    newmtl mirror\nKs 1 1 1\nillum 3\nnewmtl glass\nNi 1.5\nillum 7\n";
+    newmtl mirror\nKs 1 1 1\nillum 3\nnewmtl glass\nNi 1.5\nTf 0.5 0.6 \\\n 0.7\nillum 7\n\
+    newmtl slab # more\nKa 1 1 1\nKd 0.9 0.6 0.2\nKs 0.5\nPr 0.25\nPm 1\nPs 0.1\nPc 0.8\nPcr 0.03\naniso 0.5\n\
+    anisor 0.2\nmap_Pr -imfchan g tile.png\nmap_Pm -mm 0.1 0.8 tile.png\nnorm -bm 0.5 tile.png\nillum 3\n\
+    newmtl tiles\nKa 0.5 0.5 0.5\nKd 0.9 0.6 0.2\nKs 0.5\nNs 90\nillum 6\nd 0.5\nbump tile.png -s 2 -o 0.1 0.2\n\
+    map_Ks -clamp on -t 1 1 1 tile.png\nmap_d -blendu off -blendv off tile.png\ndisp no.png\nKm 1\nKd xyz 1 1 1\n";
 
 /// Scenes that are not there: nothing is rendered.
 const JOB: &str = "options = { spp = 8, resolution = \"64x32\", denoise = true, strict = false }\n\

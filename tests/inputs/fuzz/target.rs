@@ -6,7 +6,7 @@ use crate::sound::assert_sound;
 use lightsplat::film::{ExrFile, Pixels};
 use lightsplat::method::Method;
 use lightsplat::progress::Control;
-use lightsplat::readers::{LoadOptions, Loaded, load};
+use lightsplat::readers::{LoadOptions, Loaded, SceneError, load};
 use lightsplat::session::{FrameError, Goal, Remark, Session};
 use lightsplat::view::{Framing, View};
 use lightsplat::walk::{RetentionLimits, Walk};
@@ -76,11 +76,20 @@ impl Workplace {
         self.folder.join("case").with_extension(extension)
     }
 
+    /// Loads the scene that the case is, or is a part of.
+    pub fn load(&self, extension: &str, options: &LoadOptions) -> Result<Loaded, SceneError> {
+        let scene = match extension {
+            "toml" | "xml" | "gltf" | "glb" => self.case(extension),
+            "spd" => self.folder.join("of-spd.xml"),
+            other => self.folder.join(format!("of-{other}.toml")),
+        };
+        load(&scene, options)
+    }
+
     /// Reads the case; returns its scene, if it is a part of one that loads.
     pub fn read(&self, extension: &str) -> Option<Loaded> {
         let case = self.case(extension);
-        let scene = match extension {
-            "toml" | "xml" | "gltf" | "glb" => case,
+        match extension {
             "records" => {
                 let records = fs::read(case).unwrap();
                 let walk =
@@ -92,16 +101,15 @@ impl Workplace {
                 self.batch(&case);
                 return None;
             }
-            "spd" => self.folder.join("of-spd.xml"),
-            other => self.folder.join(format!("of-{other}.toml")),
-        };
+            _ => {}
+        }
         if extension == "exr"
             && let Ok(file) = ExrFile::read(&self.case(extension))
         {
             let _ = (file.color(), file.metadata(), file.window(), file.camera());
             file.layers().iter().for_each(|layer| _ = file.layer(layer));
         }
-        match load(&scene, &LoadOptions::default()) {
+        match self.load(extension, &LoadOptions::default()) {
             Ok(loaded) => {
                 assert_sound(&loaded);
                 Some(loaded)

@@ -4,6 +4,7 @@ use super::reach::{IN_REACH, is_within_reach};
 use super::report::SanitizeReport;
 use crate::draft::Draft;
 use crate::error::{Location, SceneError};
+use crate::finish::dark::is_dark_emission;
 use crate::finish::recentre::LocalCoordinates;
 use base::math::Rgb;
 use scene::{DeltaLight, Environment, Texture, TextureId};
@@ -67,15 +68,17 @@ fn is_dark_texture(texture: &Texture) -> bool {
     texture.texels.all(|texel| texel.max_element() <= 0.0)
 }
 
-/// Checks the emission of meshes, and drops black emission.
+/// Checks the emission of meshes, and drops black emission and that of surfaces that are not there.
 fn check_emitters(draft: &mut Draft, report: &mut SanitizeReport) -> Result<(), SceneError> {
     let place = draft.main_file();
     for mesh in &mut draft.meshes {
         let Some(emission) = mesh.emission else { continue };
         check_light(emission.radiance, &format!("mesh \"{}\": the radiance", mesh.name), &place)?;
-        let texture = emission.texture.and_then(|id| draft.scene.textures.get(id.0 as usize));
-        let dark = texture.is_some_and(is_dark_texture);
-        if emission.radiance == Rgb::ZERO || dark {
+        let of_attribute = emission.texture.and_then(|id| draft.scene.textures.attribute(id));
+        let name = of_attribute.and_then(|of| draft.attribute_names.get(of.attribute.0 as usize));
+        let values = mesh.attributes.iter().find(|attribute| Some(&attribute.name) == name);
+        let is_black = values.is_some_and(|found| found.values.all().iter().all(|value| *value == Rgb::ZERO));
+        if is_black || is_dark_emission(&emission, mesh.material, &draft.scene) {
             report.black_lights += 1;
             mesh.emission = None;
         }

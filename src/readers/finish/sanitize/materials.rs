@@ -48,6 +48,13 @@ pub(super) fn check_material(
             return Err(checks.wrong(format!("its relief has the factor {factor}"), "give a number"));
         }
     }
+    if let Some(absorption) = material.absorption {
+        if !(absorption.is_finite() && absorption.min_element() >= 0.0) {
+            let what = format!("its inside absorbs {absorption} of the light by length");
+            return Err(checks.wrong(what, "give an attenuation colour from 0 to 1 and a distance above 0"));
+        }
+        material.absorption = Some(absorption).filter(|absorption| *absorption != Rgb::ZERO);
+    }
     material.opacity = material.opacity.filter(|opacity| *opacity != Share::Constant(1.0));
     scale_sum(material, place, report, log)
 }
@@ -246,7 +253,7 @@ fn scale_sum(
     Ok(())
 }
 
-fn clamp_texels(texture: &mut Texture, scale: Rgb, report: &mut SanitizeReport) {
+pub(super) fn clamp_texels(texture: &mut Texture, scale: Rgb, report: &mut SanitizeReport) {
     limit_texels(texture, scale.max(Rgb::ONE).recip(), report);
 }
 
@@ -257,15 +264,18 @@ fn limit_texels(texture: &mut Texture, limit: Rgb, report: &mut SanitizeReport) 
         return;
     }
     let mut texels: Vec<Rgb> = texture.texels.iter().collect();
-    for texel in &mut texels {
-        if !texel.is_finite() || texel.min_element() < 0.0 {
-            report.bad_texels += 1;
-            *texel = if texel.is_nan() { Rgb::ZERO } else { texel.max(Rgb::ZERO) };
-        }
-        if texel.cmpgt(limit).any() {
-            report.clamped += 1;
-            *texel = texel.min(limit);
-        }
-    }
+    texels.iter_mut().for_each(|texel| clamp_value(texel, limit, report));
     texture.texels = Texels::new(texture.width, &texels);
+}
+
+/// Raises a value to 0 and lowers it to a limit; NaN becomes 0.
+pub(super) fn clamp_value(value: &mut Rgb, limit: Rgb, report: &mut SanitizeReport) {
+    if !value.is_finite() || value.min_element() < 0.0 {
+        report.bad_texels += 1;
+        *value = if value.is_nan() { Rgb::ZERO } else { value.max(Rgb::ZERO) };
+    }
+    if value.cmpgt(limit).any() {
+        report.clamped += 1;
+        *value = value.min(limit);
+    }
 }

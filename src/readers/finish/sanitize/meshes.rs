@@ -5,11 +5,11 @@ use super::report::SanitizeReport;
 use crate::draft::DraftMesh;
 use crate::finish::recentre::LocalCoordinates;
 use glam::{DVec3, Vec3};
+use scene::AttributeValues;
 
 /// Drops triangles with invalid corners, and triangles without area.
 pub(super) fn drop_unusable(mesh: &mut DraftMesh, report: &mut SanitizeReport) {
-    let positions = &mesh.positions;
-    mesh.triangles.retain(|t| {
+    mesh.retain_triangles(|positions, t| {
         let [Some(&a), Some(&b), Some(&c)] = t.map(|i| positions.get(i as usize)) else {
             report.out_of_range += 1;
             return false;
@@ -38,10 +38,9 @@ pub(super) fn drop_rounded(
     coordinates: &LocalCoordinates,
     report: &mut SanitizeReport,
 ) -> usize {
-    let positions = &mesh.positions;
-    let local = |i: u32| positions.get(i as usize).map_or(Vec3::INFINITY, |p| coordinates.local(*p));
     let before = mesh.triangles.len();
-    mesh.triangles.retain(|t| {
+    mesh.retain_triangles(|positions, t| {
+        let local = |i: u32| positions.get(i as usize).map_or(Vec3::INFINITY, |p| coordinates.local(*p));
         let corners = t.map(local);
         let is_huge = corners.iter().any(|p| !(p.abs().max_element() <= MAX_COORDINATE as f32));
         let is_degenerate = !is_huge && !has_area(corners.map(|p| p.as_dvec3()));
@@ -61,6 +60,14 @@ pub(super) fn use_all_vertices(mesh: &mut DraftMesh) {
     if mesh.uvs.len() != count {
         mesh.uvs.clear();
     }
+    if mesh.tangents.len() != count {
+        mesh.tangents.clear();
+    }
+    let triangle_count = mesh.triangles.len();
+    mesh.attributes.retain(|attribute| match &attribute.values {
+        AttributeValues::Vertices(values) => values.len() == count,
+        AttributeValues::Triangles(values) => values.len() == triangle_count,
+    });
     let mut renumbered = vec![u32::MAX; count];
     mesh.triangles.iter().flatten().for_each(|&i| renumbered[i as usize] = 0);
     if !renumbered.contains(&u32::MAX) {
@@ -73,6 +80,12 @@ pub(super) fn use_all_vertices(mesh: &mut DraftMesh) {
     keep(&mut mesh.positions, used);
     keep(&mut mesh.normals, used);
     keep(&mut mesh.uvs, used);
+    keep(&mut mesh.tangents, used);
+    for attribute in &mut mesh.attributes {
+        if let AttributeValues::Vertices(values) = &mut attribute.values {
+            keep(values, used);
+        }
+    }
     mesh.triangles.iter_mut().flatten().for_each(|i| *i = renumbered[*i as usize]);
 }
 

@@ -6,6 +6,7 @@
 //! - Reflectances that would create energy are clamped.
 //! - Negative light is an error, because no image could be computed from it.
 
+mod attributes;
 mod cameras;
 mod lights;
 mod materials;
@@ -18,8 +19,9 @@ use super::framing;
 use super::recentre::LocalCoordinates;
 use crate::draft::Draft;
 use crate::error::{Log, SceneError};
+use attributes::repair_attributes;
 use cameras::check_camera;
-use glam::Vec2;
+use glam::{Vec2, Vec4};
 use lights::check_lights;
 use materials::check_material;
 use meshes::{drop_rounded, drop_unusable, repair_normals, use_all_vertices};
@@ -49,6 +51,8 @@ pub(crate) fn sanitize(
         repair_normals(mesh, &mut report);
         let bad_uvs = mesh.uvs.iter_mut().filter(|uv| !uv.is_finite());
         report.bad_uvs += bad_uvs.map(|uv| *uv = Vec2::ZERO).count();
+        let bad_tangents = mesh.tangents.iter_mut().filter(|tangent| !tangent.is_finite());
+        report.bad_tangents += bad_tangents.map(|tangent| *tangent = Vec4::ZERO).count();
         report.turned += mesh.turned;
     }
     if lost as f64 > MAX_LOST * triangles as f64 {
@@ -70,6 +74,7 @@ pub(crate) fn sanitize(
         let checked = check_material(material, draft.scene.textures.edit(), place(i), &mut report, log);
         log.part(checked);
     }
+    repair_attributes(draft, &mut report);
     if let Some(texture) = draft.scene.textures.iter().find(|texture| !texture.to_uv.is_finite()) {
         let what = format!("the image \"{}\" is moved or scaled beyond all numbers", texture.name);
         log.part::<()>(Err(draft.main_file().wrong(what, "correct its transform")));

@@ -22,9 +22,11 @@ pub struct SanitizeReport {
     pub turned: usize,
     /// NaN or infinite texture coordinates, set to 0.
     pub bad_uvs: usize,
-    /// Reflectances clamped to 1, and texels clamped to values that cannot create energy.
+    /// NaN or infinite tangents; the direction of growing u stands in.
+    pub bad_tangents: usize,
+    /// Reflectances clamped to 1, and texels and attributes clamped to values that cannot create energy.
     pub clamped: usize,
-    /// NaN, infinite or negative texels, set to 0.
+    /// NaN, infinite or negative texels and attributes, set to 0.
     pub bad_texels: usize,
     /// Emitters, lights and environments without light, dropped.
     pub black_lights: usize,
@@ -48,6 +50,7 @@ impl fmt::Display for SanitizeReport {
             (self.bad_normals, "zero or NaN normals replaced"),
             (self.turned, "triangles turned to face along their vertex normals"),
             (self.bad_uvs, "NaN texture coordinates set to 0"),
+            (self.bad_tangents, "NaN tangents left out"),
             (self.clamped, "reflectances clamped"),
             (self.bad_texels, "NaN or negative texels set to 0"),
             (self.black_lights, "lights without light dropped"),

@@ -36,6 +36,7 @@ fn draft(meshes: Vec<DraftMesh>, materials: Vec<Material>) -> Draft {
         meshes,
         lights: vec![],
         material_places: vec![],
+        attribute_names: vec![],
     }
 }
 

@@ -1,12 +1,20 @@
+mod colours;
+mod compressed;
+mod container;
 mod model;
+mod packed;
 mod samples;
+mod skin;
 mod slow_damage;
+mod tangents;
 
 use super::super::{LoadOptions, Loaded, SceneError, Severity, load};
 use base::math::luminance;
 use glam::{Vec2, Vec3};
 use model::Model;
-use scene::{DeltaLight, Lobe, Material, Parameter, Principled, Projection, Reflectance, Relief, Share};
+use scene::{
+    DeltaLight, Filter, Lobe, Material, Parameter, Principled, Projection, Reflectance, Relief, Share,
+};
 use serde_json::json;
 use std::fs;
 
@@ -122,6 +130,9 @@ fn emission_has_its_strength_and_unlit_surfaces_shine() {
     let emission = loaded.scene.meshes[0].emission.unwrap();
     assert_eq!((emission.radiance, emission.two_sided), (Vec3::new(0.2, 0.4, 0.8), true));
     assert_eq!(material(&loaded, "sign").diffuse, Reflectance::BLACK);
+    let label = loaded.scene.meshes[1].emission.unwrap();
+    assert_eq!(label.radiance, Vec3::new(0.5, 0.5, 0.25));
+    assert_eq!(material(&loaded, "label").opacity, Some(Share::Constant(0.25)));
 }
 
 #[test]
@@ -209,6 +220,10 @@ fn alpha_modes_are_opacity() {
     let loaded = sample("alpha");
     let opacity: Vec<Option<Share>> =
         loaded.scene.materials.iter().map(|material| material.opacity).collect();
+    let filter = |opacity: Option<Share>| match opacity {
+        Some(Share::Textured { texture, .. }) => loaded.scene.textures[texture.0 as usize].filter,
+        _ => panic!(),
+    };
     let texels = |opacity: Option<Share>| match opacity {
         Some(Share::Textured { texture, scale }) => {
             let texels = &loaded.scene.textures[texture.0 as usize].texels;
@@ -216,8 +231,14 @@ fn alpha_modes_are_opacity() {
         }
         _ => panic!(),
     };
-    // Alpha times a factor of 0.5 is compared with a cutoff of 0.45.
-    assert_eq!(texels(opacity[0]), (vec![255.0, 0.0, 0.0, 255.0], 1.0));
+    // Alpha times a factor of 0.5 is compared with a cutoff of 0.45, after interpolation.
+    assert_eq!(texels(opacity[0]), (vec![255.0, 0.0, 100.0, 255.0], 1.0));
+    assert_eq!(filter(opacity[0]), Filter::Cut(0.45 / 0.5));
+    assert_eq!(filter(opacity[2]), Filter::Bilinear);
+    assert_eq!(
+        (texels(opacity[5]), filter(opacity[5])),
+        ((vec![255.0, 0.0, 0.0, 255.0], 1.0), Filter::Nearest)
+    );
     assert_eq!(opacity[1], Some(Share::Constant(0.25)));
     assert_eq!(texels(opacity[2]), (vec![255.0, 0.0, 100.0, 255.0], 0.5));
     assert_eq!((opacity[3], opacity[4]), (None, Some(Share::Constant(0.0))));
@@ -233,8 +254,19 @@ fn glass_is_thin_solid_or_rough() {
         panic!()
     };
     assert!((eta - 1.8).abs() < 1e-5);
-    assert_eq!(transmittance, Reflectance::Constant(Vec3::new(0.25, 1.0, 0.25)));
+    assert_eq!(transmittance, Reflectance::Constant(Vec3::ONE));
+    // The thickness of 2 does not matter, nor does a volume without a distance.
+    let sigma = -0.5f32.ln();
+    let absorption = |loaded: &Loaded, name: &str| material(loaded, name).absorption;
+    assert_eq!(absorption(&loaded, "solid"), Some(Vec3::new(sigma, 0.0, sigma)));
+    assert_eq!(absorption(&loaded, "frosted"), None);
+    let (_, model, _) = samples::all().into_iter().find(|(name, ..)| *name == "glass").unwrap();
+    let scene = "mesh = [{ file = \"m.glb\", transform = [{ scale = 4 }, { translate = [0, 3, 0] }] }]";
+    let scaled = load_beside("s.toml", &[("s.toml", scene.as_bytes()), ("m.glb", &model.glb())]).unwrap();
+    let found = absorption(&scaled, "solid").unwrap();
+    assert!((found * 4.0 - Vec3::new(sigma, 0.0, sigma)).abs().max_element() < 1e-5, "{found}");
     let frosted = principled(&loaded, "frosted");
+    assert!(frosted.tints_each_passage);
     assert_eq!((frosted.spec_trans, frosted.roughness), (Share::Constant(1.0), Share::Constant(0.5)));
     assert_eq!(principled(&loaded, "veil").spec_trans, Share::Constant(0.0));
 }

@@ -43,13 +43,20 @@ impl Model {
 
     pub fn floats<const N: usize>(&mut self, vectors: &[[f32; N]]) -> usize {
         let bytes: Vec<u8> = vectors.iter().flatten().flat_map(|v| v.to_le_bytes()).collect();
-        let kind = ["SCALAR", "VEC2", "VEC3", "VEC4"][N - 1];
+        let kind = if N == 16 { "MAT4" } else { ["SCALAR", "VEC2", "VEC3", "VEC4"][N - 1] };
         self.accessor(&bytes, COMPONENT_F32, kind, vectors.len())
     }
 
     pub fn indices(&mut self, indices: &[u16]) -> usize {
         let bytes: Vec<u8> = indices.iter().flat_map(|i| i.to_le_bytes()).collect();
         self.accessor(&bytes, COMPONENT_U16, "SCALAR", indices.len())
+    }
+
+    /// Changes the attributes of the first primitive of mesh `mesh`.
+    pub fn attributes(&mut self, mesh: usize, attributes: &[(&str, usize)]) {
+        for (name, accessor) in attributes {
+            self.json["meshes"][mesh]["primitives"][0]["attributes"][name] = json!(accessor);
+        }
     }
 
     /// Adds a mesh of one square from (-1, -1, 0) to (1, 1, 0) that faces +z.
@@ -97,11 +104,18 @@ impl Model {
         self.push("extensionsUsed", json!(extension));
     }
 
+    /// Returns the binary file, whose one buffer is the binary chunk.
     pub fn glb(&self) -> Vec<u8> {
         let mut json = self.json.clone();
         if let (Some(object), false) = (json.as_object_mut(), self.binary.is_empty()) {
             object.insert("buffers".to_owned(), json!([{ "byteLength": self.binary.len() }]));
         }
+        Model { json, binary: self.binary.clone() }.glb_as_is()
+    }
+
+    /// Returns the binary file with the buffers that the JSON lists.
+    pub fn glb_as_is(&self) -> Vec<u8> {
+        let json = &self.json;
         let padded = |bytes: &[u8], with: u8| {
             let mut bytes = bytes.to_vec();
             bytes.resize(bytes.len().next_multiple_of(4), with);

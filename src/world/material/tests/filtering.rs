@@ -79,7 +79,7 @@ fn averages_reflect_the_mean_of_the_light_or_are_not_taken() {
             let (wo, wi) = (random.hemisphere(), random.hemisphere());
             let [red, green] = [0.25, 0.75].map(|u| {
                 let uv = Vec2::new(u, 0.5);
-                let seen = materials.at_coordinates(MaterialId(0), || uv, || ALL);
+                let seen = materials.at_coordinates(MaterialId(0), || uv, || ALL, |_| Rgb::ONE);
                 let expected = match is_averaged {
                     true => [0.25, 0.75].map(|u| materials.at(MaterialId(0), Vec2::new(u, 0.5)).eval(wo, wi)),
                     false => [materials.at(MaterialId(0), uv).eval(wo, wi); 2],

@@ -49,9 +49,11 @@ fn world() -> World {
             positions,
             normals: Vec::new(),
             uvs: Vec::new(),
+            tangents: Vec::new(),
             triangles,
             material: MaterialId(0),
             emission: None,
+            attributes: Vec::new(),
         });
     };
     let n = 4u32;

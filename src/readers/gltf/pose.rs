@@ -1,0 +1,45 @@
+//! Pose of a model: transforms of its nodes and weights of its morph targets, at rest or at a time of its animation.
+
+use super::animation::{self, Track};
+use super::document::GltfFile;
+use super::nodes::Local;
+use crate::error::SceneError;
+use gltf_json::Node;
+use gltf_json::mesh::Mesh;
+
+/// Pose of a model. The default is its pose at rest.
+#[derive(Default)]
+pub(super) struct Pose {
+    tracks: Vec<Track>,
+    /// Time in seconds.
+    time: f64,
+}
+
+impl Pose {
+    /// Returns the pose at a time of the first animation, in seconds; at rest without a time or an animation.
+    pub fn at(document: &GltfFile, time: Option<f64>) -> Result<Pose, SceneError> {
+        match (time, document.root.animations.first()) {
+            (Some(time), Some(animation)) => {
+                Ok(Pose { tracks: animation::tracks(document, animation, |_| true)?, time })
+            }
+            _ => Ok(Pose::default()),
+        }
+    }
+
+    /// Returns the local transform of the node of index `index`.
+    pub fn local(&self, index: usize, node: &Node) -> Local {
+        let mut local = Local::of(node);
+        self.of(index).for_each(|track| track.apply(&mut local, self.time));
+        local
+    }
+
+    /// Returns the weights of the morph targets of the node of index `index` and its mesh; further weights are 0.
+    pub fn weights(&self, index: usize, node: &Node, mesh: &Mesh) -> Vec<f32> {
+        let animated = self.of(index).find_map(|track| track.weights(self.time));
+        animated.or_else(|| node.weights.clone()).or_else(|| mesh.weights.clone()).unwrap_or_default()
+    }
+
+    fn of(&self, index: usize) -> impl Iterator<Item = &Track> {
+        self.tracks.iter().filter(move |track| track.node == index)
+    }
+}

@@ -1,0 +1,174 @@
+//! Tests: the page lists kinds of pictures and channels of OpenEXR files, and each is read or refused as it says.
+
+use super::decode::{Channel, DecodedImage, decode};
+use super::error::Location;
+use super::statements::{Fate, Statement, assert_page_lists};
+use base::math::Rgb;
+use exr::meta::attribute::{Chromaticities, IntegerBounds};
+use exr::prelude::{AnyChannel, AnyChannels, FlatSamples, Image, Vec2, WritableImage};
+use image::{DynamicImage, ImageFormat};
+use std::io::Cursor;
+use std::path::Path;
+
+const fn new(name: &'static str, fate: Fate, note: &'static str) -> Statement {
+    Statement { name, fate, note }
+}
+
+/// Kinds of pictures.
+const PICTURES: &[Statement] = &[
+    new("PNG of 8 bits", Fate::Read, "sRGB unless raw; alpha is dropped"),
+    new("PNG of 16 bits", Fate::Read, "sRGB unless raw; alpha is dropped"),
+    new("PNG of grey", Fate::Read, "one value for three colours"),
+    new("PNG with a palette", Fate::Read, "by its colours"),
+    new("JPEG", Fate::Read, "sRGB unless raw"),
+    new("BMP", Fate::Read, "sRGB unless raw"),
+    new("TGA", Fate::Read, "sRGB unless raw; by its extension, since it has no signature"),
+    new("Radiance HDR", Fate::Read, "linear; with either signature"),
+    new("OpenEXR", Fate::Read, "linear; see the next table"),
+    new("GIF", Fate::Refused, "convert it to PNG"),
+    new("TIFF", Fate::Refused, "convert it to PNG or OpenEXR"),
+    new("DDS", Fate::Refused, "convert it to PNG"),
+    new("KTX2", Fate::Refused, "convert it to PNG"),
+];
+
+/// Channels, attributes and parts of OpenEXR files.
+const EXR: &[Statement] = &[
+    new("R", Fate::Read, "with `G` and `B`: the picture, if no layer precedes the names"),
+    new("Combined.R", Fate::Read, "else the layer `Combined`, `beauty`, `rgba`, `rgb`, `color` or `colour`"),
+    new("Y", Fate::Read, "else the luminance without a layer, as grey; `L` as well"),
+    new("NAME.R", Fate::Read, "else the colour of the only layer that has one"),
+    new("RY", Fate::Read, "with `Y` and `BY`: luminance and chroma, interpolated linearly where subsampled"),
+    new("A", Fate::NoEffect, "alpha is dropped"),
+    new("NAME.X", Fate::NoEffect, "further channels, layers and parts"),
+    new("several layers", Fate::Refused, "no layer is clearly the picture; the message lists all channels"),
+    new("displayWindow", Fate::Read, "the picture; black where it has no data"),
+    new("chromaticities", Fate::Read, "converted to Rec. 709 unless raw; colours beyond it are clipped"),
+    new("deep data", Fate::Refused, "if they are the picture; flatten them"),
+    new("subsampling under B44", Fate::Refused, "save with another compression"),
+];
+
+fn read(bytes: &[u8], name: &str) -> Option<DecodedImage> {
+    decode(bytes, Channel::Colour, Path::new(name), &Location::file(Path::new("s.toml"))).ok()
+}
+
+#[test]
+fn the_page_lists_the_kinds_of_pictures_and_the_channels() {
+    assert_page_lists("Pictures", PICTURES);
+    assert_page_lists("OpenEXR", EXR);
+}
+
+/// A square of one colour in a format.
+fn encoded(format: ImageFormat, image: DynamicImage) -> Vec<u8> {
+    let mut bytes = Cursor::new(Vec::new());
+    image.write_to(&mut bytes, format).unwrap();
+    bytes.into_inner()
+}
+
+/// A PNG of one pixel with a palette of two colours, the second of which is the pixel's.
+fn palette() -> Vec<u8> {
+    let mut png = b"\x89PNG\r\n\x1a\n".to_vec();
+    let mut chunk = |kind: &[u8; 4], data: &[u8]| {
+        let named = [&kind[..], data].concat();
+        // The checksum of PNG (ISO 15948, annex D).
+        let crc = named.iter().fold(u32::MAX, |crc, byte| {
+            (0..8)
+                .fold(crc ^ u32::from(*byte), |c, _| if c & 1 == 1 { 0xEDB8_8320 ^ (c >> 1) } else { c >> 1 })
+        });
+        png.extend([&(data.len() as u32).to_be_bytes()[..], &named, &(!crc).to_be_bytes()].concat());
+    };
+    chunk(b"IHDR", &[0, 0, 0, 1, 0, 0, 0, 1, 8, 3, 0, 0, 0]);
+    chunk(b"PLTE", &[1, 2, 3, 200, 60, 40]);
+    // One stored block of zlib: filter 0, index 1, and the sum by Adler.
+    chunk(b"IDAT", &[0x78, 0x01, 1, 2, 0, 0xFD, 0xFF, 0, 1, 0, 3, 0, 2]);
+    chunk(b"IEND", &[]);
+    png
+}
+
+#[test]
+fn each_kind_of_picture_has_its_colour() {
+    let rgb8 = DynamicImage::from(image::RgbImage::from_pixel(8, 8, image::Rgb([200, 60, 40])));
+    let rgba8 = DynamicImage::from(image::RgbaImage::from_pixel(8, 8, image::Rgba([200, 60, 40, 9])));
+    let rgb16 = image::ImageBuffer::from_pixel(8, 8, image::Rgb([200u16 * 257, 60 * 257, 40 * 257]));
+    let floats = image::ImageBuffer::from_pixel(8, 8, image::Rgb([0.5f32, 1.0, 2.0]));
+    let grey = DynamicImage::from(image::GrayImage::from_pixel(8, 8, image::Luma([200])));
+    // 200, 60 and 40 of 255, by IEC 61966-2-1 in f64.
+    let srgb = Rgb::new(0.577580, 0.0451862, 0.0212190);
+    let near = |bytes: Vec<u8>, name: &str, right: Rgb, tolerance: f32| {
+        let found = read(&bytes, name).unwrap_or_else(|| panic!("{name}")).texels.get(0, 0);
+        assert!((found - right).abs().max_element() <= tolerance, "{name}: {found}");
+    };
+    near(encoded(ImageFormat::Png, rgba8.clone()), "a.png", srgb, 1e-6);
+    near(encoded(ImageFormat::Png, rgb16.into()), "b.png", srgb, 1e-6);
+    near(encoded(ImageFormat::Png, grey), "c.png", Rgb::splat(srgb.x), 1e-6);
+    near(palette(), "d.png", srgb, 1e-6);
+    near(encoded(ImageFormat::Bmp, rgb8.clone()), "a.bmp", srgb, 1e-6);
+    near(encoded(ImageFormat::Tga, rgba8), "a.tga", srgb, 1e-6);
+    near(encoded(ImageFormat::Jpeg, rgb8), "a.jpg", srgb, 0.02);
+    near(encoded(ImageFormat::Hdr, floats.into()), "a.hdr", Rgb::new(0.5, 1.0, 2.0), 0.01);
+    for (name, signature) in [
+        ("a.gif", &b"GIF89a\x01\0\x01\0\0\0\0;"[..]),
+        ("a.tif", b"II*\0\x08\0\0\0"),
+        ("a.dds", b"DDS \x7c\0\0\0"),
+        ("a.ktx2", b"\xabKTX 20\xbb\r\n\x1a\n"),
+    ] {
+        assert!(read(signature, name).is_none(), "{name}");
+    }
+}
+
+/// Returns a file of 3 x 2 pixels with constant channels, whose attributes are changed.
+fn exr(channels: &[(&str, f32)], change: impl FnOnce(&mut exr::meta::header::ImageAttributes)) -> Vec<u8> {
+    let channel = |(name, value): &(&str, f32)| AnyChannel::new(*name, FlatSamples::F32(vec![*value; 6]));
+    let list = channels.iter().map(channel).collect();
+    let mut image = Image::from_channels((3, 2), AnyChannels::sort(list));
+    change(&mut image.attributes);
+    let mut bytes = Cursor::new(Vec::new());
+    image.write().to_buffered(&mut bytes).unwrap();
+    bytes.into_inner()
+}
+
+#[test]
+fn each_channel_of_an_exr_has_its_meaning() {
+    let colour = |channels: &[(&str, f32)]| {
+        let decoded = read(&exr(channels, |_| ()), "a.exr")?;
+        assert!(
+            (decoded.width, decoded.height) == (3, 2)
+                && decoded.texels.all(|t| t == decoded.texels.get(0, 0))
+        );
+        Some(decoded.texels.get(0, 0))
+    };
+    let layer = |layer: &'static str, [r, g, b]: [f32; 3]| {
+        [("R", r), ("G", g), ("B", b)].map(|(name, value)| {
+            let name = if layer.is_empty() { name.to_owned() } else { format!("{layer}.{name}") };
+            (&*name.leak(), value)
+        })
+    };
+    let (own, right) = ([0.5, 1.0, 2.0], Some(Rgb::new(0.5, 1.0, 2.0)));
+    let other = layer("albedo", [0.9, 0.1, 0.05]);
+    let more = [("A", 0.5), ("N.X", 7.0), ("N.Y", 7.0), ("N.Z", 7.0), ("Z", 7.0)];
+    for name in ["", "View.Combined", "beauty", "rgba", "rgb", "color", "colour"] {
+        assert_eq!(colour(&[&layer(name, own)[..], &other, &more].concat()), right, "{name}");
+    }
+    assert_eq!(colour(&[&layer("shot", own)[..], &more].concat()), right);
+    assert_eq!(colour(&[&[("Y", 0.25)], &other[..], &more].concat()), Some(Rgb::splat(0.25)));
+    assert_eq!(colour(&[&layer("shot", own)[..], &other].concat()), None);
+    let chroma = colour(&[("Y", 0.34934), ("RY", 0.6 / 0.34934 - 1.0), ("BY", 0.1 / 0.34934 - 1.0)]).unwrap();
+    assert!((chroma - Rgb::new(0.6, 0.3, 0.1)).abs().max_element() < 1e-4, "{chroma}");
+    // The display window is the picture.
+    let wider = exr(&layer("", own), |attributes| {
+        attributes.display_window = IntegerBounds { position: Vec2(-1, 0), size: Vec2(4, 2) };
+    });
+    let decoded = read(&wider, "a.exr").unwrap();
+    assert_eq!((decoded.width, decoded.texels.get(0, 0)), (4, Rgb::ZERO));
+    assert_eq!(decoded.texels.get(1, 1), right.unwrap());
+    // White stays white whatever the primaries are.
+    let wide = exr(&layer("", [0.5; 3]), |attributes| {
+        attributes.chromaticities = Some(Chromaticities {
+            red: Vec2(0.708, 0.292),
+            green: Vec2(0.170, 0.797),
+            blue: Vec2(0.131, 0.046),
+            white: Vec2(0.3127, 0.3290),
+        });
+    });
+    let white = read(&wide, "a.exr").unwrap().texels.get(0, 0);
+    assert!((white - Rgb::splat(0.5)).abs().max_element() < 1e-6, "{white}");
+}

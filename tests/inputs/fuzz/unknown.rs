@@ -1,0 +1,116 @@
+//! Valid files with one statement more, which no reader knows: a warning or an error tells it, unless it cannot change a
+//! picture.
+//!
+//! Comments, `extras`, names that a format reserves for other programs, and channels of an image besides its picture
+//! cannot change a picture. Nothing may be said about them.
+//!
+//! A case follows from its number, as those of [`super::fuzz`] do, and the same variables of the environment count.
+
+use super::additions::{self, Addition};
+use super::mutate::Random;
+use super::number;
+use super::seeds;
+use super::target::Workplace;
+use lightsplat::readers::LoadOptions;
+use lightsplat::scene::Environment;
+use lightsplat::stats::Stopwatch;
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::Path;
+
+/// Tries `count` additions to files of a format, or as many as the environment has time for.
+fn add(format: &str, count: u64) {
+    let (seconds, first) = (number("FUZZ_SECONDS"), number("FUZZ_FIRST").unwrap_or(0));
+    let name = format!("unknown-{format}-{first}");
+    let workplace = Workplace::new(Path::new(env!("CARGO_TARGET_TMPDIR")).join("fuzz").join(name));
+    let options = LoadOptions::default();
+    // Number of warnings about a file; `None` if it does not load.
+    let warnings = |extension: &str, bytes: &[u8]| -> Result<usize, String> {
+        fs::write(workplace.case(extension), bytes).unwrap();
+        let loaded = workplace.load(extension, &options).map_err(|error| error.to_string())?;
+        if let Some(Environment::Map(map)) = loaded.scene.environment.filter(|_| format == "exr") {
+            assert!(map.radiance.iter().all(|texel| *texel == additions::SKY), "another channel is read");
+        }
+        Ok(loaded.warnings.len())
+    };
+    let seeds: Vec<_> = match format {
+        // All additions to pictures and PLY meshes begin with the same file.
+        "exr" | "ply" => vec![(0, format, Vec::new())],
+        _ => (seeds::of(format).into_iter())
+            .filter(|seed| format != "gltf" || seed.extension == "gltf")
+            .filter_map(|seed| {
+                Some((warnings(seed.extension, &seed.bytes).ok()?, seed.extension, seed.bytes))
+            })
+            .collect(),
+    };
+    assert!(!seeds.is_empty(), "no seed of {format} loads");
+    let start = Stopwatch::start();
+    let is_wanted = |case: u64| match seconds {
+        Some(seconds) => start.elapsed().cpu_seconds < seconds as f64,
+        None => case < first + count,
+    };
+    let mut wrong: BTreeMap<String, String> = BTreeMap::new();
+    let (mut case, mut told) = (first, 0);
+    while is_wanted(case) {
+        let mut random = Random::new(case);
+        let (before, extension, bytes) = random.pick(&seeds);
+        let Addition { bytes, kind, is_told } = additions::add(format, bytes, &mut random);
+        let after = warnings(extension, &bytes);
+        let was_told = !matches!(&after, Ok(after) if after <= before);
+        told += u64::from(was_told);
+        if was_told != is_told {
+            let said = if was_told { "is told" } else { "falls through" };
+            wrong.entry(kind.clone()).or_insert_with(|| format!("{kind} {said} in case {case}: {after:?}"));
+        }
+        case += 1;
+    }
+    if seconds.is_some() {
+        eprintln!("{format}: {} additions from {first}, of which {told} are told", case - first);
+    }
+    let _ = fs::remove_dir_all(workplace.case("").parent().unwrap());
+    assert!(wrong.is_empty(), "{:#?}", wrong.values().collect::<Vec<_>>());
+    assert!(told > 0 || format == "exr", "no addition is told");
+}
+
+#[test]
+fn statements_of_native_scenes_are_told() {
+    add("toml", 300);
+}
+
+#[test]
+fn statements_of_ply_are_told() {
+    add("ply", 300);
+}
+
+#[test]
+fn channels_of_exr_besides_the_picture_are_no_trouble() {
+    add("exr", 300);
+}
+
+/// Passes once the reader names unknown keywords.
+#[test]
+#[ignore = "the reader does not name all unknown statements yet"]
+fn statements_of_obj_are_told() {
+    add("obj", 300);
+}
+
+/// Passes once the reader names unknown keywords.
+#[test]
+#[ignore = "the reader does not name all unknown statements yet"]
+fn statements_of_mtl_are_told() {
+    add("mtl", 300);
+}
+
+/// Passes once the reader names unknown properties, extensions and attributes.
+#[test]
+#[ignore = "the reader does not name all unknown statements yet"]
+fn statements_of_gltf_are_told() {
+    add("gltf", 300);
+}
+
+/// Passes once the reader names unknown properties, plugins and children.
+#[test]
+#[ignore = "the reader does not name all unknown statements yet"]
+fn statements_of_mitsuba_are_told() {
+    add("xml", 300);
+}
