@@ -22,7 +22,7 @@ const FILES: [(&str, &str); 5] = [
     (
         "c.ply",
         "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n\
-        property float red\nproperty float green\nproperty float blue\nproperty float vertex_weight\nelement face 1\n\
+        property float red\nproperty float green\nproperty float blue\nproperty float weight_0\nelement face 1\n\
         property list uchar int vertex_indices\nend_header\n0 0 0 1 0 0 .1\n3 0 0 0 1 0 .5\n0 1 0 0 0 1 .9\n3 0 1 2\n",
     ),
     (
