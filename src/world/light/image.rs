@@ -148,7 +148,8 @@ impl ImageLight {
     #[inline]
     fn texel(&self, at: Vec2) -> Rgb {
         let uv = Vec2::new(0.5 + 0.5 * at.x, 0.5 - 0.5 * at.y);
-        self.texture.map_or(Rgb::ONE, |id| self.textures.lookup(id, uv)).max(Rgb::ZERO)
+        let image = self.texture.and_then(|id| self.textures.by_id(id));
+        image.map_or(Rgb::ONE, |image| image.lookup(uv)).max(Rgb::ZERO)
     }
 
     /// Estimates the flux through a cell.
