@@ -8,7 +8,7 @@ use crate::error::SceneError;
 use crate::plan::EnvironmentPlan;
 use base::math::{Rgb, unit};
 use glam::{DMat3, DMat4, DVec3, Vec3};
-use scene::{DeltaLight, Emission, Projector, Reflectance, SpotImage};
+use scene::{DeltaLight, Emission, Projector, Reflectance, SpotImage, TextureId};
 use std::f32::consts::PI;
 
 impl Converter<'_> {
@@ -92,6 +92,7 @@ impl Converter<'_> {
             match self.texture(&texture, 0)? {
                 Reflectance::Constant(colour) => intensity *= colour,
                 Reflectance::Textured { texture, scale } => {
+                    self.must_be_image(emitter, texture)?;
                     intensity *= scale;
                     let to_local = self.rotation(emitter, to_world)?.transpose();
                     image = Some(SpotImage { texture, to_local: DMat3::from_mat4(to_local).as_mat3() });
@@ -104,6 +105,12 @@ impl Converter<'_> {
         Ok(())
     }
 
+    /// Rejects attributes of meshes, which no light can project.
+    fn must_be_image(&self, emitter: &Object, texture: TextureId) -> Result<(), SceneError> {
+        let wrong = || emitter.place.wrong("a light projects an attribute of a mesh", "give an image");
+        if self.contents.is_image(texture) { Ok(()) } else { Err(wrong()) }
+    }
+
     /// Adds a projector. Its `irradiance` is that of a plane at distance 1, over π.
     fn projector(&mut self, emitter: &Object, to_world: DMat4) -> Result<(), SceneError> {
         let irradiance = match self.document.named(emitter, "irradiance")? {
@@ -112,7 +119,10 @@ impl Converter<'_> {
         };
         let (colour, texture) = match irradiance {
             Reflectance::Constant(colour) => (colour, None),
-            Reflectance::Textured { texture, scale } => (scale, Some(texture)),
+            Reflectance::Textured { texture, scale } => {
+                self.must_be_image(emitter, texture)?;
+                (scale, Some(texture))
+            }
         };
         let intensity = colour * (PI * emitter.float("scale")?.unwrap_or(1.0) as f32);
         let (tan_half, axis) = field_of_view(emitter)?;

@@ -8,7 +8,7 @@ use rayon::prelude::*;
 use std::path::Path;
 
 /// Files beside every scene.
-const FILES: [(&str, &str); 4] = [
+const FILES: [(&str, &str); 5] = [
     (
         "a.obj",
         "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0.25\nvt 1 0\nvt 0 1\nvn 0 0 1\nvn 0 1 1\nvn 1 0 1\nf 1/1/1 2/2/2 3/3/3\n",
@@ -18,6 +18,12 @@ const FILES: [(&str, &str); 4] = [
         "a.ply",
         "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nproperty float u\n\
         property float v\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0 0 .25\n1 0 0 1 0\n0 1 0 0 1\n3 0 1 2\n",
+    ),
+    (
+        "c.ply",
+        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n\
+        property float red\nproperty float green\nproperty float blue\nproperty float weight_0\nelement face 1\n\
+        property list uchar int vertex_indices\nend_header\n0 0 0 1 0 0 .1\n3 0 0 0 1 0 .5\n0 1 0 0 0 1 .9\n3 0 1 2\n",
     ),
     (
         "b.ply",
@@ -58,6 +64,7 @@ fn needed(tag: &str, plugin: &str) -> &'static str {
         ("sensor", "thinlens") => "<float name=\"aperture_radius\" value=\".1\"/>",
         ("texture", "bitmap") => "<string name=\"filename\" value=\"a.png\"/>",
         ("texture", "scale") => "<texture type=\"checkerboard\"/>",
+        ("texture", "mesh_attribute") => "<string name=\"name\" value=\"vertex_color\"/>",
         ("texture", "rawconstant") => "<float name=\"value\" value=\".5\"/>",
         ("integrator", "aov" | "moment" | "stokes" | "multichannel" | "adaptive" | "irrcache") => {
             "<integrator type=\"path\"/>"
@@ -89,6 +96,7 @@ fn values(parameter: &str) -> Vec<String> {
     let special: &[&str] = match parameter {
         "filename" => &["b.obj", "b.ply", "b.png", "b.hdr"],
         "material" => &["Ag"],
+        "name" => &["vertex_weight"],
         "distribution" => &["ggx"],
         "fov_axis" => &["y"],
         "focal_length" => &["35mm"],
@@ -191,7 +199,12 @@ fn scene(tag: &str, plugin: &str, inside: &str) -> String {
                 "<texture name=\"reflectance\" type=\"checkerboard\"/>",
                 "<texture type=\"checkerboard\"/>",
             );
-            shape(&format!("<bsdf type=\"diffuse\">{texture}</bsdf>"))
+            let shape = shape(&format!("<bsdf type=\"diffuse\">{texture}</bsdf>"));
+            if plugin == "mesh_attribute" {
+                shape.replacen("obj", "ply", 1).replace("a.obj", "c.ply")
+            } else {
+                shape
+            }
         }
         "integrator" => shape("") + &object(tag),
         _ => shape(""),
