@@ -7,8 +7,8 @@ const MIN_COLOUR: f32 = 1e-30;
 
 /// Returns the absorption coefficient by length; `None` if nothing is absorbed.
 ///
-/// The coefficient is -ln(colour) / distance (`KHR_materials_volume`). An infinite distance absorbs nothing. Channels above
-/// 1 count as 1.
+/// The coefficient is -ln(colour) / distance (`KHR_materials_volume`). An infinite distance absorbs nothing. Channels
+/// above 1 count as 1.
 pub(super) fn absorption(colour: Rgb, distance: f64) -> Option<Rgb> {
     let per_length = |channel: f32| {
         let left = f64::from(channel.clamp(MIN_COLOUR, 1.0));
