@@ -5,9 +5,13 @@
 //! `embree` passes it on.
 
 use std::env::var;
+use std::process::Command;
 
 fn main() {
     println!("cargo::rerun-if-changed=build.rs");
+    if var("CARGO_PKG_NAME").is_ok_and(|name| name == "cli") {
+        tell_commit();
+    }
     println!("cargo::rustc-link-arg=-Wl,-rpath,$ORIGIN");
     // Absent if Embree is in a system folder.
     let directory = var("DEP_EMBREE4_LIBDIR").or_else(|_| var("DEP_EMBREE_LIBDIR"));
@@ -16,5 +20,20 @@ fn main() {
         if var("CARGO_MANIFEST_LINKS").is_ok() {
             println!("cargo::metadata=LIBDIR={directory}");
         }
+    }
+}
+
+/// Sets the variable `LIGHTSPLAT_COMMIT` for the crate, if the sources are a git checkout.
+fn tell_commit() {
+    let git = |arguments: &[&str]| {
+        let output =
+            Command::new("git").args(arguments).output().ok().filter(|output| output.status.success());
+        output.and_then(|output| String::from_utf8(output.stdout).ok()).map(|text| text.trim().to_owned())
+    };
+    let Some(commit) = git(&["rev-parse", "--short=10", "HEAD"]) else { return };
+    println!("cargo::rustc-env=LIGHTSPLAT_COMMIT={commit}");
+    // The log of HEAD changes with every commit and checkout.
+    if let Some(log) = git(&["rev-parse", "--git-path", "logs/HEAD"]) {
+        println!("cargo::rerun-if-changed={log}");
     }
 }

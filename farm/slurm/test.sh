@@ -60,7 +60,7 @@ until [[ $(sinfo -h -o %T 2>/dev/null | sort -u) == idle ]]; do sleep 0.5; done
 sinfo
 
 cd "$work"
-SBATCH_OPTIONS="--output=$work/%x-%A_%a.log" "$here/submit.sh" "$scene" "$work/frames/f.####.exr" 1-12 4 "${options[@]}"
+CPUS_PER_TASK=1 SBATCH_OPTIONS="--output=$work/%x-%A_%a.log" "$here/submit.sh" "$scene" "$work/frames/f.####.exr" 1-12 4 "${options[@]}"
 # Processes of a node: the daemon, those that have its name in their environment, and the step daemon above them.
 processes_of() {
   local pid

@@ -2,14 +2,17 @@
 
 use super::bench_args::BenchArgs;
 use super::denoise_args::{DenoiseArgs, DenoiseFileArgs};
+use super::develop::DevelopArgs;
 use super::exit;
+use super::generate::GenerateArgs;
 use super::method_args::MethodArgs;
 use super::plan_args::{PlanArgs, Quality};
-use super::png_args::PngArgs;
-use super::values::{Bytes, Crop, ProgressMode, Resolution, counted, feature, q_scale};
-use base::film::Exposure;
+use super::png_args::{PngArgs, ToneArgs};
+use super::reading_args::ReadingArgs;
+use super::still_files::ImageFormat;
+use super::values::{Bytes, Crop, Loudness, ProgressMode, Resolution, counted, feature, q_scale};
+use super::version;
 use clap::{Arg, ArgGroup, Args, CommandFactory, FromArgMatches, Parser, Subcommand, ValueEnum};
-use readers::LoadOptions;
 use render::session::Feature;
 use render::walk::{FileNames, FrameList, Q_SCALE, RetentionLimits};
 use std::ffi::OsString;
@@ -33,6 +36,17 @@ impl Cli {
     /// # Errors
     /// If the arguments are wrong, or ask for help or the version.
     pub fn of(arguments: impl IntoIterator<Item = impl Into<OsString> + Clone>) -> Result<Cli, clap::Error> {
+        let arguments: Vec<OsString> = arguments.into_iter().map(Into::into).collect();
+        let mut command = Cli::definition();
+        if arguments.get(1).is_some_and(|first| first == "--version") {
+            command = command.long_version(version::text());
+        }
+        let matches = command.try_get_matches_from_mut(arguments)?;
+        Cli::from_arg_matches(&matches).map_err(|error| error.format(&mut command))
+    }
+
+    /// Returns the definition of all commands and options.
+    pub fn definition() -> clap::Command {
         let has_no_value = |arg: &Arg| {
             !arg.get_action().takes_values()
                 || arg.get_num_args().is_some_and(|range| range.max_values() == 0)
@@ -41,9 +55,7 @@ impl Cli {
             true => arg,
             false => arg.allow_negative_numbers(true),
         };
-        let mut command = Cli::command().mut_subcommands(|command| command.mut_args(negative));
-        let matches = command.try_get_matches_from_mut(arguments)?;
-        Cli::from_arg_matches(&matches).map_err(|error| error.format(&mut command))
+        Cli::command().mut_subcommands(|command| command.mut_args(negative))
     }
 }
 
@@ -60,6 +72,8 @@ pub enum Command {
     Info(InfoArgs),
     /// Denoise an existing image
     Denoise(DenoiseFileArgs),
+    /// Make a PNG of an OpenEXR image, with another exposure or view
+    Develop(DevelopArgs),
     /// Merge images of one view with different seeds into one with less noise
     Merge(MergeArgs),
     /// Put the frames of a walk on a contact sheet
@@ -68,18 +82,24 @@ pub enum Command {
     Compare(CompareArgs),
     /// Benchmark parts of the renderer
     Bench(BenchArgs),
+    /// Print a completion script or the man page
+    Generate(GenerateArgs),
 }
 
 /// Options of `render`.
 #[derive(Debug, Args)]
 #[command(after_help = exit::HELP)]
 pub struct RenderArgs {
-    /// Scene: native (.toml), Mitsuba (.xml) or glTF (.glb, .gltf)
+    /// Scene: glTF (.glb, .gltf), a mesh (.obj, .ply, .stl), native (.toml) or Mitsuba (.xml)
     pub scene: PathBuf,
-    /// Image to write: 32-bit float OpenEXR with metadata, and with variance if it is known; `####` or `%04d` in the
-    /// name stands for the number of `--frame`
-    #[arg(short, long, value_name = "FILE.exr")]
-    pub output: PathBuf,
+    /// Image to write: 32-bit float OpenEXR with metadata, and with variance if it is known, or a tone-mapped PNG alone;
+    /// `-` for standard output; `####` or `%04d` in the name stands for the number of `--frame` [default: the scene's
+    /// name with .exr, in the current folder]
+    #[arg(short, long, value_name = "FILE.exr|FILE.png|-")]
+    pub output: Option<PathBuf>,
+    /// Format of standard output
+    #[arg(long, value_enum, value_name = "FORMAT", default_value_t)]
+    pub format: ImageFormat,
     /// The method and its settings.
     #[command(flatten)]
     pub method: MethodArgs,
@@ -87,7 +107,7 @@ pub struct RenderArgs {
     #[command(flatten)]
     pub picture: PictureArgs,
     /// Use the camera of this frame of the camera path, counted from 1, instead of the still camera
-    #[arg(long, value_name = "N", value_parser = counted)]
+    #[arg(short, long, value_name = "N", value_parser = counted)]
     pub frame: Option<NonZeroUsize>,
     /// The tone-mapped image.
     #[command(flatten)]
@@ -107,10 +127,10 @@ pub struct RenderArgs {
 #[derive(Debug, Args)]
 pub struct PictureArgs {
     /// Number of threads [default: number of processors]; the image does not depend on it
-    #[arg(long, value_parser = clap::value_parser!(u32).range(1..=4096))]
+    #[arg(short, long, value_parser = clap::value_parser!(u32).range(1..=4096))]
     pub threads: Option<u32>,
-    /// Width and height in pixels, instead of those in the scene
-    #[arg(long, value_name = "WxH")]
+    /// Width and height in pixels, instead of those in the scene: WxH; W or xH alone keeps the aspect ratio; N% scales
+    #[arg(short, long, visible_alias = "size", value_name = "WxH|W|N%")]
     pub resolution: Option<Resolution>,
     /// Render only this rectangle, in pixels from the top-left corner; with path and lightcuts its pixels equal those
     /// of the full image, with other methods they differ by about 1 %
@@ -126,41 +146,35 @@ pub struct PictureArgs {
     /// path-traced images that were interrupted
     #[arg(long)]
     pub resume: bool,
+    /// Fail, before rendering, if a file exists that the run would replace
+    #[arg(long, conflicts_with = "resume")]
+    pub no_overwrite: bool,
     /// Write no times and no number of threads, so that equal renders give equal files
     #[arg(long)]
     pub reproducible: bool,
     /// Form of the messages on standard error
     #[arg(long, value_enum, default_value_t = ProgressMode::Auto)]
     pub progress: ProgressMode,
+    /// Print errors alone
+    #[arg(short, long, conflicts_with = "verbose")]
+    quiet: bool,
+    /// Print a line per stage, with its seconds
+    #[arg(short, long)]
+    verbose: bool,
     /// Reading of the scene.
     #[command(flatten)]
     pub reading: ReadingArgs,
 }
 
-/// Options of reading a scene.
-#[derive(Clone, Debug, Default, Args)]
-pub struct ReadingArgs {
-    /// Camera of the scene: its number, counted from 1, or its name [default: 1]
-    #[arg(long, value_name = "N|NAME")]
-    camera: Option<String>,
-    /// Value of `$NAME` in a Mitsuba scene, which replaces its `<default>`; may be repeated
-    #[arg(short = 'D', long = "define", value_name = "NAME=VALUE", value_parser = definition)]
-    define: Vec<(String, String)>,
-    /// Fail, instead of warning, if the scene has an unsupported feature or the image is black
-    #[arg(long)]
-    pub strict: bool,
-}
-
-impl ReadingArgs {
-    /// Returns the options of the scene reader.
-    pub fn options(self) -> LoadOptions {
-        LoadOptions { strict: self.strict, camera: self.camera, parameters: self.define }
+impl PictureArgs {
+    /// Returns how much is to be said.
+    pub fn loudness(&self) -> Loudness {
+        match (self.quiet, self.verbose) {
+            (true, _) => Loudness::Quiet,
+            (false, true) => Loudness::Verbose,
+            (false, false) => Loudness::Normal,
+        }
     }
-}
-
-fn definition(text: &str) -> Result<(String, String), String> {
-    let (name, value) = text.split_once('=').ok_or("write NAME=VALUE")?;
-    if name.is_empty() { Err("the name is empty".into()) } else { Ok((name.to_owned(), value.to_owned())) }
 }
 
 /// Options of `walk`.
@@ -173,7 +187,7 @@ pub struct WalkArgs {
     #[arg(short, long, value_name = "NAME.####.exr")]
     pub output: FileNames,
     /// Frames to render, counted from 1: 7, 1-10, 1-100x5 (every fifth), or a list of such ranges [default: all]
-    #[arg(long, value_name = "LIST")]
+    #[arg(short, long, value_name = "LIST")]
     pub frames: Option<FrameList>,
     /// Render the frames in chunks of N, which begin without records: separate runs, on any machines, may render one
     /// chunk each and give the same images [default: one chunk]
@@ -204,11 +218,11 @@ pub struct WalkArgs {
     #[command(flatten)]
     pub picture: PictureArgs,
     /// Do not write tone-mapped images
-    #[arg(long, conflicts_with = "exposure")]
+    #[arg(long, conflicts_with_all = ["exposure", "view"])]
     pub no_png: bool,
-    /// Exposure of the PNG files in stops; `auto` maps the 90th percentile of luminance over the whole path to 0.8
-    #[arg(long, value_name = "auto|EV", default_value_t, allow_negative_numbers = true)]
-    pub exposure: Exposure,
+    /// Exposure and view of the PNG files.
+    #[command(flatten)]
+    pub tone: ToneArgs,
     /// Print counters and stage times to standard output: a table of the frames, or one JSON object per frame
     #[arg(long, value_enum, value_name = "FORMAT")]
     pub stats: Option<StatsFormat>,
@@ -221,6 +235,12 @@ pub struct BatchArgs {
     /// Job files (.toml), which list images and walks, each with the options of its command
     #[arg(required = true)]
     pub jobs: Vec<PathBuf>,
+    /// Print the number, the scene and the output of each entry, and render nothing
+    #[arg(long, conflicts_with = "only")]
+    pub list: bool,
+    /// Render only these entries, counted from 1 over all job files: 7, 1-10, or a list of such ranges
+    #[arg(long, value_name = "LIST")]
+    pub only: Option<FrameList>,
     /// Skip images and frames whose files are complete and come from the same scene, settings and program version
     #[arg(long)]
     pub resume: bool,
@@ -302,7 +322,7 @@ pub enum VerifyAgainst {
 #[derive(Debug, Args)]
 #[command(after_help = exit::HELP)]
 pub struct InfoArgs {
-    /// Scene: native (.toml), Mitsuba (.xml) or glTF (.glb, .gltf)
+    /// Scene: glTF (.glb, .gltf), a mesh (.obj, .ply, .stl), native (.toml) or Mitsuba (.xml)
     pub scene: PathBuf,
     /// Print JSON
     #[arg(long)]

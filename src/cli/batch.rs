@@ -7,25 +7,34 @@ use super::batch_file::{self, JobEntry};
 use super::course::RunSpan;
 use super::exit::{self, Failure};
 use super::job::RenderJob;
+use super::values::Loudness;
 use super::walk_job::WalkJob;
 use super::{batch_outputs, interrupt, opened, render, talk, threads, walk};
 use ::render::session::Opened;
+use ::render::walk::FrameList;
 use anyhow::{Context, anyhow};
 use base::progress::Control;
 use base::stats::Stopwatch;
 use serde_json::json;
+use std::collections::BTreeSet;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 
 /// Runs the command.
 pub fn run(args: BatchArgs) -> Result<(), Failure> {
-    talk::start(args.progress, "batch");
+    talk::start(args.progress, Loudness::Normal, "batch");
     let more: &[&str] = if args.resume { &["--resume"] } else { &[] };
     let mut entries = Vec::new();
     for path in &args.jobs {
         entries.extend(batch_file::read(path, more)?);
     }
     batch_outputs::check_apart(&entries)?;
+    if args.list {
+        return list(&entries);
+    }
+    if let Some(only) = &args.only {
+        entries = chosen(entries, only)?;
+    }
     let control = Arc::new(Control::new());
     interrupt::cancel_on_signal(&control).context("cannot catch signals").map_err(Failure::render)?;
     let pool = threads::pool(threads::count(args.threads))?;
@@ -37,6 +46,27 @@ pub fn run(args: BatchArgs) -> Result<(), Failure> {
         batch.settle(entry, checked).is_some()
     });
     pool.install(|| batch.render(entries))
+}
+
+/// Prints the number, the scene and the output of each entry.
+fn list(entries: &[JobEntry]) -> Result<(), Failure> {
+    let line = |(i, entry): (usize, &JobEntry)| {
+        format!("{}\t{}\t{}\n", i + 1, entry.scene.display(), entry.output.display())
+    };
+    talk::print(&entries.iter().enumerate().map(line).collect::<String>())
+}
+
+/// Returns the entries with these numbers, counted from 1.
+fn chosen(entries: Vec<JobEntry>, only: &FrameList) -> Result<Vec<JobEntry>, Failure> {
+    let count = entries.len();
+    if only.last() > count {
+        let last = only.last();
+        return Err(Failure::usage(anyhow!(
+            "--only: there is no entry {last}; the job files have {count}, which --list prints"
+        )));
+    }
+    let numbers: BTreeSet<usize> = only.iter().collect();
+    Ok((1..).zip(entries).filter(|(number, _)| numbers.contains(number)).map(|(_, entry)| entry).collect())
 }
 
 /// A running batch.

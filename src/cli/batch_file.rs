@@ -7,8 +7,7 @@ use super::args::{Cli, Command};
 use super::exit::Failure;
 use anyhow::{Context, anyhow};
 use clap::error::{ContextKind, ContextValue};
-use readers::LoadOptions;
-use readers::read_regular;
+use readers::{EnvironmentChoice, LoadOptions, read_regular};
 use render::walk::FileNames;
 use serde::Deserialize;
 use std::collections::BTreeMap;
@@ -23,7 +22,7 @@ use toml::{Spanned, Table, Value};
 const OF_THE_BATCH: [&str; 2] = ["threads", "progress"];
 
 /// Options that name a file.
-const FILES: [&str; 1] = ["png"];
+const FILES: [&str; 2] = ["png", "env"];
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -160,7 +159,7 @@ impl JobEntry {
                 return Err(self.wrong(name, &remedy));
             }
             match value {
-                Value::String(file) if FILES.contains(&name.as_str()) => {
+                Value::String(file) if FILES.contains(&name.as_str()) && is_file(name, file) => {
                     let mut argument = OsString::from(format!("--{name}="));
                     argument.push(folder.join(file));
                     arguments.push(argument);
@@ -181,6 +180,11 @@ impl JobEntry {
         };
         Ok(self)
     }
+}
+
+/// Returns true if the value of an option that may name a file does.
+fn is_file(name: &str, value: &str) -> bool {
+    name != "env" || matches!(value.parse(), Ok(EnvironmentChoice::Map(_)))
 }
 
 /// Returns the arguments of an option.
@@ -214,7 +218,7 @@ fn scalar(value: &Value) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::job::RenderJob;
+    use crate::still_files::StillFiles;
     use render::method::Method;
 
     fn entries(text: &str) -> Result<Vec<JobEntry>, Failure> {
@@ -247,8 +251,9 @@ mod tests {
         )
         .unwrap();
         let Command::Render(frame) = found[2].command().unwrap() else { panic!("{found:?}") };
-        let (exr, png) = RenderJob::files(&frame).unwrap();
-        assert!(exr.ends_with("out/still.03.exr") && png.unwrap().ends_with("out/still.03.png"));
+        let files = StillFiles::new(&frame).unwrap();
+        let png = files.png.unwrap().0;
+        assert!(files.exr.unwrap().ends_with("out/still.03.exr") && png.ends_with("out/still.03.png"));
         let Command::Render(still) = found[0].command().unwrap() else { panic!("{found:?}") };
         assert_eq!(still.method.method().unwrap().spp(), 2);
         let Method::Cache(settings) = still.method.method().unwrap() else { panic!("{still:?}") };

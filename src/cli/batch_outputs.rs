@@ -3,7 +3,7 @@
 use super::args::Command;
 use super::batch_file::JobEntry;
 use super::exit::Failure;
-use super::job::RenderJob;
+use super::still_files::StillFiles;
 use anyhow::anyhow;
 use base::film::atomic;
 use render::walk::FileNames;
@@ -19,7 +19,7 @@ pub fn check_apart(entries: &[JobEntry]) -> Result<(), Failure> {
         // The check of an entry reports its other errors.
         let Ok(command) = entry.command() else { continue };
         let output = match &command {
-            Command::Render(args) => RenderJob::files(args).map(|(exr, _)| exr).ok(),
+            Command::Render(args) => StillFiles::new(args).map(|files| files.main().to_owned()).ok(),
             _ => Some(entry.output.clone()),
         };
         let Some(Ok(target)) = output.map(|path| atomic::resolve(&path)) else { continue };

@@ -13,7 +13,7 @@ use std::path::Path;
 /// Runs the command.
 pub fn run(args: CompareArgs) -> Result<(), Failure> {
     if let Some(path) = &args.heatmap {
-        check_name(path, "png", "--heatmap")?;
+        check_name(path, "png", "--heatmap", "for PNG")?;
         atomic::check_writable(path).map_err(Failure::output)?;
         let variances = args.variance_a.iter().chain(&args.variance_b);
         Inputs::new([&args.test, &args.reference].into_iter().chain(variances))

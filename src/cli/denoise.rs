@@ -14,7 +14,7 @@ pub fn run(args: DenoiseFileArgs) -> Result<(), Failure> {
     let input = &args.input;
     let output = args.output.clone().unwrap_or_else(|| input.with_extension("denoised.exr"));
     let png = args.png.file(&output);
-    check_outputs(&output, png.as_deref(), false)?;
+    check_outputs(Some(&output), png.as_deref(), false)?;
     Inputs::new([input]).check_apart([&output].into_iter().chain(&png).map(PathBuf::as_path))?;
     let mut file = ExrFile::read(input).map_err(Failure::input)?;
     file.check_whole().map_err(Failure::input)?;
@@ -55,14 +55,15 @@ pub fn run(args: DenoiseFileArgs) -> Result<(), Failure> {
     file.set("denoised", library.as_str());
     let mut said = format!("wrote {}", output.display());
     let shown = file.to_rec_709(clean).map_err(Failure::input)?;
-    let exposed = png.map(|path| (path, args.png.exposure.factor(&shown)));
-    if let Some((path, factor)) = &exposed {
-        file.set("png_exposure", f64::from(factor.log2()));
-        said += &format!(" and {} (exposure {:+.2} EV)", path.display(), factor.log2());
+    let exposed = png.map(|path| (path, args.png.tone.tone().look(&shown)));
+    if let Some((path, look)) = &exposed {
+        file.set("png_exposure", f64::from(look.stops()));
+        file.set("png_view", look.curve.name());
+        said += &format!(" and {} (exposure {:+.2} EV)", path.display(), look.stops());
     }
     file.write(&output).map_err(Failure::output)?;
-    if let Some((path, factor)) = &exposed {
-        write_png(path, &shown, *factor).map_err(Failure::output)?;
+    if let Some((path, look)) = &exposed {
+        write_png(path, &shown, *look).map_err(Failure::output)?;
     }
     let guided_by = if guided_by.is_empty() { "no layer".to_owned() } else { guided_by.join(" and ") };
     talk::note(&format!("denoised with {library}, guided by {guided_by}"));

@@ -2,18 +2,16 @@
 
 use super::args::{RenderArgs, StatsFormat};
 use super::exit::Failure;
-use super::outputs::check_outputs;
-use super::values::ProgressMode;
+use super::still_files::StillFiles;
+use super::values::{ProgressMode, Resolution};
 use super::{job_key, threads, verify};
 use anyhow::anyhow;
-use base::film::Exposure;
 use base::stats::Stopwatch;
 use readers::LoadOptions;
 use render::session::{Goal, Session};
-use render::walk::names::numbered;
 use serde_json::json;
 use std::num::NonZeroUsize;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use world::view::Framing;
 
 /// A validated render: scene, method and output files.
@@ -23,10 +21,8 @@ pub struct RenderJob {
     pub scene: PathBuf,
     /// Options of the scene reader.
     pub reading: LoadOptions,
-    /// OpenEXR file. Its folder is writable.
-    pub output: PathBuf,
-    /// PNG file and its exposure.
-    pub png: Option<(PathBuf, Exposure)>,
+    /// Files to write. Their folder is writable.
+    pub files: StillFiles,
     /// True if an existing image with the same key is not rendered again.
     pub resume: bool,
     /// True if the files must depend on scene and settings alone.
@@ -35,8 +31,12 @@ pub struct RenderJob {
     pub goal: Goal,
     /// Number of threads.
     pub threads: usize,
-    /// Frame, film size and crop that replace those of the scene.
-    pub framing: Framing,
+    /// Frame of the camera path; `None` for the still camera.
+    pub frame: Option<usize>,
+    /// Film size instead of the scene's.
+    size: Option<Resolution>,
+    /// Part of the film, as offset and size in pixels.
+    crop: Option<[[u32; 2]; 2]>,
     /// Start of the run.
     pub run: Stopwatch,
     /// Format of the statistics on stdout.
@@ -56,8 +56,11 @@ impl RenderJob {
         let method = args.plan.method(args.method.method()?, &pinned)?;
         let verify = verify::settings(&args.verify, &method, args.plan.error.is_some());
         let plan = args.plan.goal(&method, pinned, args.verify.verify_samples, run)?;
-        let (output, png) = RenderJob::files(&args)?;
-        check_outputs(&output, png.as_deref(), args.picture.resume)?;
+        let files = StillFiles::new(&args)?;
+        files.check(args.picture.resume, args.picture.no_overwrite)?;
+        if args.picture.resume && files.exr.is_none() {
+            return Err(Failure::usage(anyhow!("--resume needs an OpenEXR file; name one with -o")));
+        }
         let goal = Goal {
             method,
             may_choose,
@@ -77,41 +80,30 @@ impl RenderJob {
         Ok(RenderJob {
             scene: args.scene,
             reading: args.picture.reading.options(),
-            output,
-            png: png.map(|path| (path, args.png.exposure)),
+            files,
             resume: args.picture.resume,
             reproducible: args.picture.reproducible,
             goal,
             threads: threads::count(args.picture.threads),
-            framing: Framing {
-                frame: args.frame.map(NonZeroUsize::get),
-                resolution: args.picture.resolution.map(|r| r.0),
-                crop: args.picture.crop.map(|crop| [crop.offset, crop.size]),
-            },
+            frame: args.frame.map(NonZeroUsize::get),
+            size: args.picture.resolution,
+            crop: args.picture.crop.map(|crop| [crop.offset, crop.size]),
             run,
             stats: args.stats,
             progress: args.picture.progress,
         })
     }
 
-    /// Returns the OpenEXR and the PNG file of a command, with the number of the frame where a name has a place for it.
-    ///
-    /// # Errors
-    /// If a name has such a place and the command names no frame.
-    pub fn files(args: &RenderArgs) -> Result<(PathBuf, Option<PathBuf>), Failure> {
-        let frame = args.frame.map(NonZeroUsize::get);
-        let numbered = |option: &str, path: &Path| {
-            numbered(path, frame)
-                .map_err(|what| Failure::usage(anyhow!("{option} {}: {what}", path.display())))
-        };
-        let output = numbered("--output", &args.output)?;
-        let png = args.png.file(&output).map(|path| numbered("--png", &path)).transpose()?;
-        Ok((output, png))
-    }
-
     /// Returns the key of the image.
     pub fn key(&self, session: &Session) -> String {
-        let exposure = self.png.as_ref().map(|(_, exposure)| exposure.to_string());
-        job_key::of(session, &self.goal, json!([format!("{:?}", self.framing), exposure, self.reproducible]))
+        let tone = self.files.png.as_ref().map(|(_, tone)| tone.to_string());
+        let framing = format!("{:?}", self.framing(session));
+        job_key::of(session, &self.goal, json!([framing, tone, self.reproducible]))
+    }
+
+    /// Returns frame, film size and crop.
+    pub fn framing(&self, session: &Session) -> Framing {
+        let resolution = self.size.map(|size| size.of(session.cameras.resolution));
+        Framing { frame: self.frame, resolution, crop: self.crop }
     }
 }

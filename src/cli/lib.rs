@@ -12,12 +12,18 @@ mod batch_outputs;
 mod bench;
 mod bench_args;
 mod chart;
+#[cfg(test)]
+mod cli_page;
 mod compare;
 mod course;
 mod denoise;
 mod denoise_args;
+mod develop;
+#[cfg(test)]
+mod doc_links;
 mod exit;
 mod files;
+mod generate;
 mod info;
 mod interrupt;
 mod job;
@@ -30,13 +36,16 @@ mod picture;
 mod plan_args;
 mod png_args;
 mod progress;
+mod reading_args;
 mod render;
 mod sheet;
+mod still_files;
 mod study;
 mod talk;
 mod threads;
 mod values;
 mod verify;
+mod version;
 mod walk;
 mod walk_job;
 mod walk_report;
@@ -68,10 +77,12 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Batch(args) => batch::run(args),
         Command::Info(args) => info::run(args),
         Command::Denoise(args) => denoise::run(args),
+        Command::Develop(args) => develop::run(args),
         Command::Merge(args) => merge::run(args),
         Command::Sheet(args) => sheet::run(args),
         Command::Compare(args) => compare::run(args),
         Command::Bench(args) => bench::run(args),
+        Command::Generate(args) => generate::run(args),
     }));
     let code = match outcome {
         Ok(Ok(())) => exit::SUCCESS,

@@ -22,7 +22,7 @@ const OWN: [&str; 3] = ["job", "render_seconds", "threads"];
 /// Runs the command.
 pub fn run(args: MergeArgs) -> Result<(), Failure> {
     let png = args.png.file(&args.output);
-    check_outputs(&args.output, png.as_deref(), false)?;
+    check_outputs(Some(&args.output), png.as_deref(), false)?;
     Inputs::new(&args.inputs).check_apart([&args.output].into_iter().chain(&png).map(PathBuf::as_path))?;
     let mut files = Vec::new();
     for path in &args.inputs {
@@ -70,14 +70,15 @@ pub fn run(args: MergeArgs) -> Result<(), Failure> {
     count_samples(&mut merged, &weights, color.pixels.len());
     let mut said = format!("wrote {}, merged from {} images", args.output.display(), weights.len());
     let mut written = vec![args.output.clone()];
-    let factor = args.png.exposure.factor(&color);
+    let look = args.png.tone.tone().look(&color);
     if let Some(path) = &png {
-        merged.set("png_exposure", f64::from(factor.log2()));
-        said += &format!(", and {} (exposure {:+.2} EV)", path.display(), factor.log2());
+        merged.set("png_exposure", f64::from(look.stops()));
+        merged.set("png_view", look.curve.name());
+        said += &format!(", and {} (exposure {:+.2} EV)", path.display(), look.stops());
     }
     merged.write(&args.output).map_err(Failure::output)?;
     if let Some(path) = png {
-        write_png(&path, &color, factor).map_err(Failure::output)?;
+        write_png(&path, &color, look).map_err(Failure::output)?;
         written.push(path);
     }
     talk::wrote(&said, &written);

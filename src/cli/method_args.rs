@@ -145,7 +145,10 @@ impl MethodSetting {
             help += &format!(" [default: {default}]");
         }
         let arg = Arg::new(spec.key).long(spec.option()).help(help);
+        let arg = if spec.key == "spp" { arg.short('s').visible_alias("samples") } else { arg };
         let arg = arg.help_heading(Some(spec.heading).filter(|heading| !heading.is_empty()));
+        // The short help has the options that most people need.
+        let arg = arg.hide_short_help(!spec.heading.is_empty());
         if spec.flag {
             let arg = arg.action(ArgAction::Set).num_args(0).default_missing_value("on");
             return arg.value_parser(self.parser());
@@ -176,48 +179,6 @@ impl MethodSetting {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::fs;
-
-    /// Marks before and after the table in the README.
-    const MARKS: [&str; 2] =
-        ["<!-- settings: made by UPDATE_README=1 cargo test --lib readme -->\n\n", "\n<!-- -->\n"];
-
-    /// Methods and settings as Markdown.
-    fn table() -> String {
-        let mut text = format!("| `--method` | |\n|---|---|\n| `{AUTO}` | {ABOUT_AUTO}; the default |\n");
-        for method in Method::all() {
-            text += &format!("| `{}` | {} |\n", method.name(), method.about());
-        }
-        text += "\n| option | methods | default | |\n|---|---|---|---|\n";
-        for setting in settings() {
-            let spec = setting.spec;
-            let all = setting.defaults.len() == Method::all().count();
-            let of = if all { "all".to_owned() } else { setting.of().join(", ") };
-            let choices: Vec<_> = setting.choices.iter().map(|choice| choice.name).collect();
-            let value = match (spec.placeholder, spec.flag) {
-                (_, true) => String::new(),
-                (Some(placeholder), _) => format!(" {placeholder}"),
-                _ if choices.is_empty() => " N".to_owned(),
-                _ => format!(" {}", choices.join("\\|")),
-            };
-            let (option, default, help) = (spec.option(), setting.default(), spec.help());
-            text += &format!("| `--{option}{value}` | {of} | {default} | {help} |\n");
-        }
-        text
-    }
-
-    #[test]
-    fn the_readme_lists_methods_and_settings() {
-        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../README.md");
-        let text = fs::read_to_string(path).unwrap();
-        let (before, rest) = text.split_once(MARKS[0]).unwrap();
-        let (found, after) = rest.split_once(MARKS[1]).unwrap();
-        if std::env::var_os("UPDATE_README").is_some() {
-            fs::write(path, [before, MARKS[0], &table(), MARKS[1], after].concat()).unwrap();
-        } else {
-            assert!(found == table(), "out of date: run UPDATE_README=1 cargo test --lib readme");
-        }
-    }
 
     #[test]
     fn defaults_of_methods_that_differ_are_all_told() {

@@ -6,23 +6,46 @@ use base::film::atomic;
 use render::session::Session;
 use std::collections::BTreeSet;
 use std::ffi::OsStr;
+use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Checks the names of the files of an image, and that they can be written.
+/// Checks the names of the files of an image, and that they can be written. A missing folder is made if the folder
+/// above it exists.
 ///
 /// If existing files `may_stay`, [`check_unprotected`] must check later whether they are write-protected.
 ///
 /// # Errors
 /// If a name is wrong, a file cannot be written, or two files are the same.
-pub fn check_outputs(exr: &Path, png: Option<&Path>, may_stay: bool) -> Result<(), Failure> {
-    check_name(exr, "exr", "--output")?;
-    if let Some(path) = png {
-        check_name(path, "png", "--png")?;
+pub fn check_outputs(exr: Option<&Path>, png: Option<&Path>, may_stay: bool) -> Result<(), Failure> {
+    if let Some(path) = exr {
+        check_name(path, "exr", "--output", "for OpenEXR")?;
     }
-    let paths = || std::iter::once(exr).chain(png);
+    if let Some(path) = png {
+        check_name(path, "png", "--png", "for PNG")?;
+    }
+    let paths = || exr.into_iter().chain(png);
+    paths().for_each(make_folder);
     let check = if may_stay { atomic::check_place } else { atomic::check_writable };
     paths().try_for_each(|path| check(path).map_err(Failure::output))?;
     Inputs::default().check_apart(paths())
+}
+
+/// Makes the folder of a file if it alone is missing. If it cannot be made, the check of the file says so.
+fn make_folder(path: &Path) {
+    if let Some(folder) = path.parent().filter(|folder| !folder.as_os_str().is_empty() && !folder.exists()) {
+        let _ = fs::create_dir(folder);
+    }
+}
+
+/// Refuses files that exist.
+pub fn check_new<'a>(files: impl IntoIterator<Item = &'a Path>) -> Result<(), Failure> {
+    match files.into_iter().find(|path| path.exists()) {
+        Some(path) => Err(Failure::output(anyhow!(
+            "{} exists, and --no-overwrite keeps it; name another file, or leave --no-overwrite out",
+            path.display()
+        ))),
+        None => Ok(()),
+    }
 }
 
 /// Refuses existing files that are write-protected.
@@ -30,8 +53,8 @@ pub fn check_unprotected<'a>(files: impl IntoIterator<Item = &'a Path>) -> Resul
     files.into_iter().try_for_each(|path| atomic::check_unprotected(path).map_err(Failure::output))
 }
 
-/// Checks the extension of a file that `option` names.
-pub fn check_name(path: &Path, extension: &str, option: &str) -> Result<(), Failure> {
+/// Checks the extension of a file that `option` names. `why` ends the message.
+pub fn check_name(path: &Path, extension: &str, option: &str, why: &str) -> Result<(), Failure> {
     if path.as_os_str().as_encoded_bytes().ends_with(b"/") {
         let path = path.display();
         return Err(Failure::usage(anyhow!(
@@ -42,7 +65,10 @@ pub fn check_name(path: &Path, extension: &str, option: &str) -> Result<(), Fail
     if right {
         return Ok(());
     }
-    Err(Failure::usage(anyhow!("{option} {}: the name of the file must end in .{extension}", path.display())))
+    Err(Failure::usage(anyhow!(
+        "{option} {}: the name of the file must end in .{extension} {why}",
+        path.display()
+    )))
 }
 
 /// Files that a command reads, with resolved links.

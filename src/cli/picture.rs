@@ -1,15 +1,30 @@
 //! Files of an image: OpenEXR, the tone-mapped PNG, and PNG files of layers for display.
 
 use super::exit::Failure;
-use base::film::{ExrFile, Film, false_colour, write_exr, write_png, write_srgb8};
+use base::film::{ExrFile, Film, Look, false_colour, write_exr, write_png, write_srgb8};
+use base::stats::StageTime;
 use std::path::{Path, PathBuf};
 
-/// Files that have been written, with a message.
+/// Files that have been written, with what there is to say of them.
 pub struct Written {
-    /// The message.
-    pub said: String,
     /// The files.
     pub files: Vec<PathBuf>,
+    /// Names of the image's own files.
+    names: String,
+    /// Width and height in pixels.
+    size: [u32; 2],
+    /// Binary logarithm of the factor on radiance in the PNG.
+    exposure: Option<f32>,
+}
+
+impl Written {
+    /// Returns the message of an image whose rendering took some time.
+    pub fn said(&self, time: StageTime) -> String {
+        let [width, height] = self.size;
+        let seconds = time.wall_seconds;
+        let exposure = self.exposure.map_or(String::new(), |stops| format!(", exposure {stops:+.2} EV"));
+        format!("wrote {} ({width}x{height}, {seconds:.1} s{exposure})", self.names)
+    }
 }
 
 /// Facts of an image that differ between equal renders.
@@ -31,13 +46,15 @@ pub fn is_partial(exr: &Path) -> bool {
     ExrFile::read(exr).is_ok_and(|file| file.metadata().text("partial") == Some("true"))
 }
 
-/// Writes an image to `exr`, then PNG files. The number is a factor on radiance.
+/// Writes an image to `exr`, if given, then PNG files.
 ///
 /// # Errors
 /// If a file cannot be written.
-pub fn write(exr: &Path, png: Option<(&Path, f32)>, mut film: Film) -> Result<Written, Failure> {
+pub fn write(exr: Option<&Path>, png: Option<(&Path, Look)>, mut film: Film) -> Result<Written, Failure> {
     let mut written = describe(exr, png, &mut film);
-    write_exr(exr, &film).map_err(Failure::output)?;
+    if let Some(exr) = exr {
+        write_exr(exr, &film).map_err(Failure::output)?;
+    }
     written.files.extend(write_previews(png, &film)?);
     Ok(written)
 }
@@ -46,30 +63,38 @@ pub fn write(exr: &Path, png: Option<(&Path, f32)>, mut film: Film) -> Result<Wr
 ///
 /// # Errors
 /// If a file cannot be written.
-pub fn write_exr_last(exr: &Path, png: Option<(&Path, f32)>, mut film: Film) -> Result<Written, Failure> {
-    let mut written = describe(exr, png, &mut film);
+pub fn write_exr_last(exr: &Path, png: Option<(&Path, Look)>, mut film: Film) -> Result<Written, Failure> {
+    let mut written = describe(Some(exr), png, &mut film);
     written.files.extend(write_previews(png, &film)?);
     write_exr(exr, &film).map_err(Failure::output)?;
     Ok(written)
 }
 
-/// Stores the exposure of the PNG in the film. Returns the message and the OpenEXR file.
-fn describe(exr: &Path, png: Option<(&Path, f32)>, film: &mut Film) -> Written {
-    let mut said = format!("wrote {}", exr.display());
-    if let Some((path, factor)) = png {
-        film.metadata.set("png_exposure", f64::from(factor.log2()));
-        said += &format!(" and {} (exposure {:+.2} EV)", path.display(), factor.log2());
+/// Stores the exposure of the PNG in the film. Returns what there is to say, and the OpenEXR file.
+fn describe(exr: Option<&Path>, png: Option<(&Path, Look)>, film: &mut Film) -> Written {
+    let exposure = png.map(|(_, look)| look.stops());
+    if let Some(stops) = exposure {
+        film.metadata.set("png_exposure", f64::from(stops));
     }
-    Written { said, files: vec![exr.to_owned()] }
+    if let Some((_, look)) = png {
+        film.metadata.set("png_view", look.curve.name());
+    }
+    let names = exr.into_iter().chain(png.map(|(path, _)| path)).map(|path| path.display().to_string());
+    Written {
+        files: exr.map(Path::to_owned).into_iter().collect(),
+        names: names.collect::<Vec<_>>().join(" and "),
+        size: [film.window.width, film.window.height],
+        exposure,
+    }
 }
 
 /// Writes the PNG file, and a PNG file named after it for every layer for display. Returns the files.
-fn write_previews(png: Option<(&Path, f32)>, film: &Film) -> Result<Vec<PathBuf>, Failure> {
-    let Some((picture, factor)) = png else { return Ok(Vec::new()) };
-    write_png(picture, &film.color, factor).map_err(Failure::output)?;
+fn write_previews(png: Option<(&Path, Look)>, film: &Film) -> Result<Vec<PathBuf>, Failure> {
+    let Some((picture, look)) = png else { return Ok(Vec::new()) };
+    write_png(picture, &film.color, look).map_err(Failure::output)?;
     let mut files = vec![picture.to_owned()];
     for layer in &film.layers {
-        if let Some(bytes) = false_colour::show(layer, &film.color, factor) {
+        if let Some(bytes) = false_colour::show(layer, &film.color, look.factor) {
             let path = picture.with_extension(format!("{}.png", layer.name));
             let size = [film.window.width, film.window.height];
             write_srgb8(&path, size, &bytes).map_err(Failure::output)?;

@@ -1,7 +1,7 @@
 //! Options of tone-mapped images.
 
-use base::film::Exposure;
-use clap::Args;
+use base::film::{Exposure, Tone, ToneCurve};
+use clap::{Args, ValueEnum};
 use std::path::{Path, PathBuf};
 
 /// Options of the tone-mapped image beside an OpenEXR file.
@@ -11,14 +11,62 @@ pub struct PngArgs {
     #[arg(long, value_name = "FILE.png")]
     png: Option<PathBuf>,
     /// Do not write a tone-mapped image
-    #[arg(long, conflicts_with_all = ["png", "exposure"])]
+    #[arg(long, conflicts_with_all = ["png", "exposure", "view"])]
     no_png: bool,
-    /// Exposure of the PNG file in stops; `auto` maps the 90th percentile of luminance to 0.8
-    #[arg(long, value_name = "auto|EV", default_value_t, allow_negative_numbers = true)]
-    pub exposure: Exposure,
+    /// Exposure and view.
+    #[command(flatten)]
+    pub tone: ToneArgs,
+}
+
+/// Options of exposure and view.
+#[derive(Clone, Copy, Debug, Default, Args)]
+pub struct ToneArgs {
+    /// Exposure of PNG files in stops; `auto` maps the 90th percentile of luminance to 0.8, over all frames of a walk
+    #[arg(short, long, value_name = "auto|EV", default_value_t, allow_negative_numbers = true)]
+    exposure: Exposure,
+    /// Curve from radiance to the PNG file
+    #[arg(long, value_enum, value_name = "VIEW", default_value_t)]
+    view: NamedView,
+}
+
+/// Curve from radiance to display values.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+enum NamedView {
+    /// Khronos PBR Neutral: colours as they are, highlights compressed
+    #[default]
+    Neutral,
+    /// Clip at 1, sRGB
+    Standard,
+    /// AgX: soft contrast, bright colours turn to white
+    Agx,
+    /// Hable's filmic curve: strong contrast
+    Filmic,
+}
+
+impl ToneArgs {
+    /// Returns exposure and view.
+    pub fn tone(self) -> Tone {
+        let curve = match self.view {
+            NamedView::Neutral => ToneCurve::Neutral,
+            NamedView::Standard => ToneCurve::Standard,
+            NamedView::Agx => ToneCurve::Agx,
+            NamedView::Filmic => ToneCurve::Filmic,
+        };
+        Tone { exposure: self.exposure, curve }
+    }
 }
 
 impl PngArgs {
+    /// Returns true if the arguments name a file.
+    pub fn names_a_file(&self) -> bool {
+        self.png.is_some()
+    }
+
+    /// Returns true if there is to be no tone-mapped image.
+    pub fn leaves_out(&self) -> bool {
+        self.no_png
+    }
+
     /// Returns the file of the tone-mapped image beside `exr`; `None` if there is to be none.
     pub fn file(&self, exr: &Path) -> Option<PathBuf> {
         if self.no_png {

@@ -2,7 +2,7 @@
 
 use super::course::RunProgress;
 use super::talk;
-use super::values::ProgressMode;
+use super::values::{Loudness, ProgressMode};
 use base::progress::{Control, Progress};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use serde_json::{Value, json};
@@ -13,6 +13,10 @@ use std::time::Duration;
 
 /// Interval between updates of the bar.
 const BAR_INTERVAL: Duration = Duration::from_millis(100);
+/// Number of steps of the bar.
+const STEPS: u64 = 1000;
+/// Seconds between lines off a terminal: the minimum, and the maximum if nothing changes.
+const LINES: [f64; 2] = [3.0, 30.0];
 /// Interval between events.
 const LINE_INTERVAL: Duration = Duration::from_millis(500);
 /// Interval between lines for agents, which log every line.
@@ -47,8 +51,17 @@ impl Watch {
         let run = &mut self.run;
         let result = match self.mode {
             ProgressMode::None => work(),
-            ProgressMode::Auto if !bar => work(),
-            ProgressMode::Auto => beside(work, |stop| show_bar(control, stop)),
+            ProgressMode::Auto => match (talk::loudness(), bar) {
+                (Loudness::Quiet, _) => work(),
+                (Loudness::Verbose, _) => beside(work, |stop| {
+                    while goes_on(&stop, BAR_INTERVAL) {
+                        write_stages(control);
+                    }
+                    write_stages(control);
+                }),
+                (Loudness::Normal, false) => beside(work, |stop| write_lines(control, run, stop)),
+                (Loudness::Normal, true) => beside(work, |stop| show_bar(control, run, stop)),
+            },
             ProgressMode::Ndjson => beside(work, |stop| {
                 while goes_on(&stop, LINE_INTERVAL) {
                     write_events(control, number, |now| fraction_and_eta(run, Some(now)));
@@ -96,30 +109,54 @@ fn goes_on(stop: &Receiver<()>, interval: Duration) -> bool {
     matches!(stop.recv_timeout(interval), Err(RecvTimeoutError::Timeout))
 }
 
-/// Shows a progress bar until the work ends.
-fn show_bar(control: &Control, stop: Receiver<()>) {
-    let known = style("{msg:<10} [{bar:40}] {percent:>3} %  {elapsed_precise}  (ends in {eta})");
-    let unknown = style("{msg:<10} {spinner} {pos}  {elapsed_precise}");
-    // Every change redraws the bar in its current style. So it is hidden until its first stage is set.
-    let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::hidden()).with_style(unknown.clone());
-    let mut stage = None;
+/// Shows one progress bar of the whole run until the work ends.
+fn show_bar(control: &Control, run: &mut RunProgress, stop: Receiver<()>) {
+    let bar = ProgressBar::with_draw_target(Some(STEPS), ProgressDrawTarget::hidden());
+    let bar = bar.with_style(style("{prefix:>6} [{bar:40}] {percent:>3} %  {wide_msg}"));
     while goes_on(&stop, BAR_INTERVAL) {
         let Some(progress) = control.progress() else { continue };
-        if stage != Some((progress.stage, progress.is_planning)) {
-            bar.set_style(if progress.total > 0 { known.clone() } else { unknown.clone() });
-            bar.set_message(progress.displayed_stage().name());
-            bar.set_length(progress.total);
-            bar.reset();
-            if stage.is_none() {
-                bar.set_draw_target(ProgressDrawTarget::stderr());
-            }
-            stage = Some((progress.stage, progress.is_planning));
+        let fraction = run.fraction(Some(&progress));
+        bar.set_position((fraction * STEPS as f64) as u64);
+        bar.set_prefix(format!("{:.0} s", talk::seconds()));
+        bar.set_message(stage_and_rest(&progress, run));
+        if bar.is_hidden() {
+            bar.set_draw_target(ProgressDrawTarget::stderr());
         }
-        bar.set_length(progress.total);
-        bar.set_position(progress.done);
         bar.tick();
     }
     bar.finish_and_clear();
+}
+
+/// Returns the stage, and the expected time until the end if it is known.
+fn stage_and_rest(progress: &Progress, run: &RunProgress) -> String {
+    let stage = progress.displayed_stage().name();
+    match run.eta_seconds() {
+        Some(seconds) if seconds >= 1.0 => format!("{stage}, ends in about {seconds:.0} s"),
+        _ => stage.to_owned(),
+    }
+}
+
+/// Writes a line now and then until the work ends: after a tenth of the run, or after a time.
+fn write_lines(control: &Control, run: &mut RunProgress, stop: Receiver<()>) {
+    let (mut said, mut at) = (0.0, talk::seconds());
+    while goes_on(&stop, BAR_INTERVAL) {
+        let Some(progress) = control.progress() else { continue };
+        let (fraction, now) = (run.fraction(Some(&progress)), talk::seconds());
+        let (is_tenth, waited) = (fraction >= said + 0.1, now - at);
+        if waited >= LINES[1] || is_tenth && waited >= LINES[0] {
+            let percent = (100.0 * fraction) as u32;
+            talk::line(&format!("{percent:>3} %, {now:.0} s: {}", stage_and_rest(&progress, run)));
+            (said, at) = (fraction, now);
+        }
+    }
+}
+
+/// Writes a line for each stage that began since the last call.
+fn write_stages(control: &Control) {
+    let (begun, _) = control.news();
+    for stage in begun {
+        talk::line(&format!("{:>8.2} s: {}", talk::seconds(), stage.name()));
+    }
 }
 
 fn style(template: &str) -> ProgressStyle {

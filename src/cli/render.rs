@@ -15,14 +15,13 @@ use base::stats::{Stage, Stopwatch, peak_resident_bytes};
 use render::method::path::PartialImage;
 use render::session::{BLACK, FrameError, Opened, Remark, RenderedFrame};
 use std::fs;
-use std::path::PathBuf;
 use std::sync::Arc;
 use world::view::View;
 
 /// Runs the command.
 pub fn run(args: RenderArgs) -> Result<(), Failure> {
     let run = Stopwatch::start();
-    talk::start(args.picture.progress, "render");
+    talk::start(args.picture.progress, args.picture.loudness(), "render");
     let job = RenderJob::new(args, run)?;
     let control = Arc::new(Control::new());
     interrupt::cancel_on_signal(&control).context("cannot catch signals").map_err(Failure::render)?;
@@ -38,42 +37,45 @@ pub fn run(args: RenderArgs) -> Result<(), Failure> {
 /// # Errors
 /// If the image cannot be rendered or written, or a signal interrupted the run.
 pub fn still(job: &RenderJob, opened: &Opened, span: RunSpan, control: &Control) -> Result<(), Failure> {
-    let (exr, png) = (&job.output, job.png.as_ref().map(|(path, _)| path.as_path()));
     let key = job.key(&opened.session);
-    if job.resume && job_key::is_done(exr, png, job.framing.frame, &key) {
+    let png = job.files.png.as_ref().map(|(path, _)| path.as_path());
+    if let Some(exr) = job.files.exr.as_deref().filter(|_| job.resume)
+        && job_key::is_done(exr, png, job.frame, &key)
+    {
         talk::note(&format!("{} exists already and is left as it is", exr.display()));
         return Ok(());
     }
-    let paths = || [exr.as_path()].into_iter().chain(png);
     let inputs = Inputs::of(&opened.session);
-    inputs.check_apart(paths())?;
-    outputs::check_unprotected(paths())?;
+    inputs.check_apart(job.files.paths())?;
+    outputs::check_unprotected(job.files.paths())?;
     if let Some(png) = png.filter(|_| job.goal.method.inspects()) {
         inputs.check_layers(png)?;
     }
-    let parts = [exr.clone(), picture::beside(exr)];
-    let begun = parts.iter().filter(|_| job.resume);
-    let begun = begun.filter_map(|part| Some((part, job_key::begun(part, job.framing.frame, &key)?))).next();
-    let begun = begun.map(|(part, begun)| {
+    let begun = job.files.exr.as_ref().filter(|_| job.resume);
+    let begun = begun.and_then(|exr| {
+        let parts = [exr.clone(), picture::beside(exr)];
+        parts.into_iter().find_map(|part| Some((job_key::begun(&part, job.frame, &key)?, part)))
+    });
+    let begun = begun.map(|(begun, part)| {
         talk::note(&format!("continuing with the samples of {}", part.display()));
         begun
     });
     let progress = Watch::new(job.progress, RunProgress::new(1, Stages::of(&job.goal), span));
     let mut frame = render(job, opened, begun, progress, control)?;
-    let (exr, png) = files(job, frame.complete);
-    frame.facts["output"] = exr.to_string_lossy().into();
-    frame.facts["png"] = png.as_ref().map(|path| path.to_string_lossy()).into();
+    let files = job.files.of_image(frame.complete);
+    frame.facts["output"] = files.main().to_string_lossy().into();
+    frame.facts["png"] = files.png.as_ref().map(|(path, _)| path.to_string_lossy()).into();
     frame.film.metadata.set("job", key.as_str());
     if job.reproducible {
         picture::forget_circumstances(&mut frame.film);
     }
     let is_black = frame.is_black();
-    let can_go_on = frame.film.layers.iter().any(|layer| layer.name == SAMPLES);
+    let can_go_on = files.exr.is_some() && frame.film.layers.iter().any(|layer| layer.name == SAMPLES);
     let RenderedFrame { film, mut stats, mut facts, remarks, measured, complete, unverified, .. } = frame;
     say(&remarks);
-    let exposed = png.as_deref().zip(job.png.as_ref().map(|(_, exposure)| exposure.factor(&film.color)));
-    let written = stats.time(Stage::Write, || picture::write(&exr, exposed, film))?;
-    talk::wrote(&written.said, &written.files);
+    let exposed = files.png.as_ref().map(|(path, tone)| (path.as_path(), tone.look(&film.color)));
+    let written = stats.time(Stage::Write, || picture::write(files.exr.as_deref(), exposed, film))?;
+    job.files.deliver(&written.said(job.run.elapsed()), &written.files)?;
     say(&measured);
     if complete {
         remove_parts(job, &key);
@@ -97,7 +99,7 @@ pub fn still(job: &RenderJob, opened: &Opened, span: RunSpan, control: &Control)
         }
         None => {}
     }
-    let output = exr.display();
+    let output = files.main().display();
     match (complete, unverified) {
         (true, _) if job.reading.strict && is_black => Err(Failure::render(anyhow!("{output}: {BLACK}"))),
         (true, false) => Ok(()),
@@ -130,7 +132,7 @@ fn render(
     control: &Control,
 ) -> Result<RenderedFrame, Failure> {
     let Opened { session, warnings, .. } = opened;
-    let view = View::new(&session.cameras, &job.framing).map_err(Failure::usage)?;
+    let view = View::new(&session.cameras, &job.framing(session)).map_err(Failure::usage)?;
     if control.is_cancelled() {
         return Err(Failure::interrupted(FrameError::Interrupted));
     }
@@ -141,7 +143,7 @@ fn render(
     let is_done = |frame: &Result<RenderedFrame, FrameError>| {
         frame.as_ref().is_ok_and(|frame| frame.complete && !frame.unverified)
     };
-    let frame = progress.frame(job.framing.frame, control, work, is_done);
+    let frame = progress.frame(job.frame, control, work, is_done);
     let mut frame = frame.map_err(|error| match error {
         FrameError::Interrupted | FrameError::Unplanned => Failure::interrupted(error),
         FrameError::Memory { .. } | FrameError::Unplannable(_) => Failure::usage(error),
@@ -150,7 +152,7 @@ fn render(
         return Err(Failure::interrupted(FrameError::Interrupted));
     }
     frame.stats.merge(&session.stats);
-    if let Some(number) = job.framing.frame {
+    if let Some(number) = job.frame {
         frame.film.metadata.set("frame", number as f64);
     }
     frame.facts["scene_warnings"] = warnings.len().into();
@@ -159,21 +161,12 @@ fn render(
 
 /// Removes the partial image that an interrupted run wrote beside an older one. A failure to remove it does no harm.
 fn remove_parts(job: &RenderJob, key: &str) {
-    let exr = picture::beside(&job.output);
-    if !job_key::is_part(&exr, job.framing.frame, key) {
+    let Some(exr) = job.files.exr.as_deref().map(picture::beside) else { return };
+    if !job_key::is_part(&exr, job.frame, key) {
         return;
     }
-    let png = job.png.as_ref().map(|(path, _)| picture::beside(path));
+    let png = job.files.png.as_ref().map(|(path, _)| picture::beside(path));
     for file in [exr].into_iter().chain(png) {
         let _ = fs::remove_file(file);
     }
-}
-
-/// Returns the OpenEXR and the PNG file of the job. A partial image gets files beside them if these may be complete.
-fn files(job: &RenderJob, is_complete: bool) -> (PathBuf, Option<PathBuf>) {
-    let png = job.png.as_ref().map(|(path, _)| path);
-    if is_complete || !job.output.exists() || picture::is_partial(&job.output) {
-        return (job.output.clone(), png.cloned());
-    }
-    (picture::beside(&job.output), png.map(|path| picture::beside(path)))
 }

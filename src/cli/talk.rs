@@ -4,7 +4,7 @@
 //! additional lines for agents of Open Job Description.
 
 use super::exit::Failure;
-use super::values::ProgressMode;
+use super::values::{Loudness, ProgressMode};
 use anyhow::Context;
 use serde_json::{Value, json};
 use std::io::{self, Write};
@@ -15,21 +15,26 @@ use std::time::Instant;
 /// Version of the schema of events. A version ends if a field or an event is removed or changes its meaning.
 const SCHEMA: u32 = 1;
 
-/// Kind of messages, and the start of the run. The first call of [`start`] sets it.
-static VOICE: OnceLock<(ProgressMode, Instant)> = OnceLock::new();
+/// Kind and number of messages, and the start of the run. The first call of [`start`] sets it.
+static VOICE: OnceLock<(ProgressMode, Loudness, Instant)> = OnceLock::new();
 
 fn mode() -> ProgressMode {
-    VOICE.get().map_or(ProgressMode::Auto, |(mode, _)| *mode)
+    VOICE.get().map_or(ProgressMode::Auto, |(mode, ..)| *mode)
+}
+
+/// Returns how much is said.
+pub fn loudness() -> Loudness {
+    VOICE.get().map_or(Loudness::default(), |(_, loudness, _)| *loudness)
 }
 
 /// Returns the seconds since the start of the run.
 pub fn seconds() -> f64 {
-    VOICE.get().map_or(0.0, |(_, start)| start.elapsed().as_secs_f64())
+    VOICE.get().map_or(0.0, |(.., start)| start.elapsed().as_secs_f64())
 }
 
-/// Sets the kind of messages for the rest of the run, and writes the first event.
-pub fn start(mode: ProgressMode, command: &str) {
-    VOICE.get_or_init(|| (mode, Instant::now()));
+/// Sets kind and number of messages for the rest of the run, and writes the first event.
+pub fn start(mode: ProgressMode, loudness: Loudness, command: &str) {
+    VOICE.get_or_init(|| (mode, loudness, Instant::now()));
     event("start", || json!({ "command": command, "version": env!("CARGO_PKG_VERSION") }));
 }
 
@@ -96,16 +101,22 @@ pub fn line(text: &str) {
 
 fn say(kind: &str, text: &str) {
     match mode() {
+        ProgressMode::Auto if loudness() == Loudness::Quiet && kind != "error" => {}
         ProgressMode::Ndjson => event(kind, || json!({ "text": text })),
         _ if kind == "note" => line(text),
         _ => line(&format!("{kind}: {text}")),
     }
 }
 
-/// Writes data to stdout. A reader that has closed the pipe (`| head`) is no error.
+/// Writes text to stdout. A reader that has closed the pipe (`| head`) is no error.
 pub fn print(text: &str) -> Result<(), Failure> {
+    print_bytes(text.as_bytes())
+}
+
+/// Writes data to stdout. A reader that has closed the pipe is no error.
+pub fn print_bytes(bytes: &[u8]) -> Result<(), Failure> {
     let mut stdout = io::stdout().lock();
-    match stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush()) {
+    match stdout.write_all(bytes).and_then(|()| stdout.flush()) {
         Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
             Err(error).context("cannot write to standard output").map_err(Failure::output)
         }

@@ -20,6 +20,18 @@ pub enum ProgressMode {
     None,
 }
 
+/// Number of messages for people.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Loudness {
+    /// Errors alone.
+    Quiet,
+    /// Warnings, notes and progress.
+    #[default]
+    Normal,
+    /// A line per stage in addition.
+    Verbose,
+}
+
 /// Returns the parser of names of features.
 pub fn feature() -> impl TypedValueParser<Value = Feature> {
     PossibleValuesParser::new(Feature::ALL.map(Feature::name)).try_map(|name| name.parse::<Feature>())
@@ -36,21 +48,54 @@ pub fn q_scale(text: &str) -> Result<f32, String> {
     scale.ok_or_else(|| "expected 0 or a scale from 0.01 to 1000, like 4".to_owned())
 }
 
-/// Film size, parsed from `WxH`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Resolution(pub [u32; 2]);
+/// Film size: exact, or relative to that of the scene.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Resolution {
+    /// Width and height in pixels.
+    Exact([u32; 2]),
+    /// Width; the aspect ratio is the scene's.
+    Width(u32),
+    /// Height; the aspect ratio is the scene's.
+    Height(u32),
+    /// Factor on width and height.
+    Scale(f64),
+}
+
+impl Resolution {
+    /// Returns the film size in pixels; `own` is that of the scene.
+    pub fn of(self, own: [u32; 2]) -> [u32; 2] {
+        let [width, height] = own.map(f64::from);
+        let scaled = |scale: f64| {
+            [width, height].map(|side| (side * scale).round().clamp(1.0, f64::from(MAX_SIDE)) as u32)
+        };
+        match self {
+            Resolution::Exact(size) => size,
+            Resolution::Width(pixels) => [pixels, scaled(f64::from(pixels) / width)[1]],
+            Resolution::Height(pixels) => [scaled(f64::from(pixels) / height)[0], pixels],
+            Resolution::Scale(scale) => scaled(scale),
+        }
+    }
+}
 
 impl FromStr for Resolution {
     type Err = String;
 
+    /// Parses `WxH`, `W`, `xH` or `N%`.
     fn from_str(text: &str) -> Result<Resolution, String> {
-        let sides: Option<Vec<u32>> = text.split(['x', 'X', '×']).map(|s| s.trim().parse().ok()).collect();
-        match sides.as_deref() {
-            Some(&[w, h]) if (1..=MAX_SIDE).contains(&w) && (1..=MAX_SIDE).contains(&h) => {
-                Ok(Resolution([w, h]))
+        let side = |text: &str| text.trim().parse().ok().filter(|side| (1..=MAX_SIDE).contains(side));
+        let parsed = match (text.strip_suffix('%'), text.split_once(['x', 'X', '×'])) {
+            (Some(percent), _) => {
+                let percent = percent.trim().parse().ok();
+                let percent = percent.filter(|percent: &f64| (0.1..=10_000.0).contains(percent));
+                percent.map(|percent| Resolution::Scale(percent / 100.0))
             }
-            _ => Err(format!("expected two sizes from 1 to {MAX_SIDE} like 640x480")),
-        }
+            (None, Some(("", height))) => side(height).map(Resolution::Height),
+            (None, Some((width, height))) => {
+                side(width).zip(side(height)).map(|(width, height)| Resolution::Exact([width, height]))
+            }
+            (None, None) => side(text).map(Resolution::Width),
+        };
+        parsed.ok_or_else(|| format!("expected sizes from 1 to {MAX_SIDE} like 640x480, 640 or x480, or 50%"))
     }
 }
 
@@ -115,9 +160,14 @@ mod tests {
 
     #[test]
     fn sizes_and_crops_are_parsed_and_refused() {
-        assert_eq!("640x480".parse(), Ok(Resolution([640, 480])));
-        assert_eq!("1X1".parse(), Ok(Resolution([1, 1])));
-        for bad in ["", "640", "0x5", "5x0", "-1x5", "1x2x3", "9999999x1", "axb", "99999999999x1"] {
+        let own = |text: &str| text.parse::<Resolution>().map(|size| size.of([960, 540]));
+        assert_eq!((own("640x480"), own("1X1")), (Ok([640, 480]), Ok([1, 1])));
+        assert_eq!(
+            (own("480"), own("x1080"), own("50%")),
+            (Ok([480, 270]), Ok([1920, 1080]), Ok([480, 270]))
+        );
+        assert_eq!((own("1"), own("0.1%")), (Ok([1, 1]), Ok([1, 1])));
+        for bad in ["", "0", "0x5", "5x0", "-1x5", "1x2x3", "9999999x1", "axb", "x", "%", "0%", "nan%"] {
             assert!(bad.parse::<Resolution>().is_err(), "{bad}");
         }
         assert_eq!("1, 2,3,4".parse(), Ok(Crop { offset: [1, 2], size: [3, 4] }));

@@ -9,7 +9,7 @@ use super::walk_job::{PlannedChunk, WalkJob};
 use super::walk_report::WalkReport;
 use super::{interrupt, opened, picture, talk, threads};
 use anyhow::{Context, anyhow};
-use base::film::{Exposure, Film, Image};
+use base::film::{Exposure, Film, Image, Look};
 use base::progress::Control;
 use base::stats::{Stage, Stopwatch};
 use render::session::{BLACK, FrameError, Opened, Remark, RenderedFrame, Session};
@@ -26,7 +26,7 @@ use world::view::View;
 
 /// Runs the command.
 pub fn run(args: WalkArgs) -> Result<(), Failure> {
-    talk::start(args.picture.progress, "walk");
+    talk::start(args.picture.progress, args.picture.loudness(), "walk");
     let job = WalkJob::new(args)?;
     let control = Arc::new(Control::new());
     interrupt::cancel_on_signal(&control).context("cannot catch signals").map_err(Failure::render)?;
@@ -61,7 +61,7 @@ pub fn walk(job: &WalkJob, opened: &Opened, span: RunSpan, control: &Control) ->
     let progress = Watch::new(job.progress, RunProgress::new(count, Stages::of(&job.goal), span));
     let said = BTreeSet::new();
     let mut frames =
-        Frames { job, session, warnings: warnings.len(), control, factor: None, report, progress, said };
+        Frames { job, session, warnings: warnings.len(), control, look: None, report, progress, said };
     let ended = chunks.into_iter().try_for_each(|chunk| frames.chunk(chunk));
     ended.and(frames.report.sum_up())
 }
@@ -73,8 +73,8 @@ struct Frames<'a> {
     /// Number of warnings of the reader.
     warnings: usize,
     control: &'a Control,
-    /// Factor on radiance in the PNG files, once it is known.
-    factor: Option<f32>,
+    /// Look of the PNG files, once it is known.
+    look: Option<Look>,
     report: WalkReport,
     progress: Watch,
     /// Remarks that were printed.
@@ -131,7 +131,7 @@ impl Frames<'_> {
             "frame",
             || json!({ "frame": number, "state": "start", "index": place, "count": count, "is_there": is_there }),
         );
-        let view = View::new(&session.cameras, &job.framing(number)).map_err(Failure::usage)?;
+        let view = View::new(&session.cameras, &job.framing(number, session)).map_err(Failure::usage)?;
         let work = || walk.frame(&view, control);
         let is_done =
             |frame: &Result<RenderedFrame, FrameError>| frame.as_ref().is_ok_and(|frame| frame.complete);
@@ -148,7 +148,7 @@ impl Frames<'_> {
             self.report.repeat();
         } else {
             self.say_once(&frame, number);
-            self.write(&mut frame, number, &chunk.keys[index], &view)?;
+            self.write(&mut frame, number, &chunk.keys[index], &view, &watch)?;
             frame.stats.add_time(Stage::Total, watch.elapsed());
             self.report.add(number, &frame)?;
         }
@@ -160,48 +160,49 @@ impl Frames<'_> {
         Ok(())
     }
 
-    /// Writes a frame and reports its files.
+    /// Writes a frame, on which `watch` has run since its start, and reports its files.
     fn write(
         &mut self,
         frame: &mut RenderedFrame,
         number: usize,
         key: &str,
         view: &View,
+        watch: &Stopwatch,
     ) -> Result<(), Failure> {
         let (exr, png) = self.job.files(number);
-        let factor = self.factor(number, view)?;
+        let look = self.look(number, view)?;
         frame.film.metadata.set("frame", number as f64);
         frame.film.metadata.set("job", key);
         let mut film = mem::replace(&mut frame.film, Film::new(Image::new(0, 0)));
         if self.job.reproducible {
             picture::forget_circumstances(&mut film);
         }
-        let png = png.as_deref().zip(factor);
+        let png = png.as_deref().zip(look);
         let written = frame.stats.time(Stage::Write, || picture::write_exr_last(&exr, png, film))?;
         frame.facts["scene_warnings"] = self.warnings.into();
         frame.facts["output"] = exr.to_string_lossy().into();
         frame.facts["png"] = png.map(|(path, _)| path.to_string_lossy()).into();
-        talk::wrote(&format!("frame {number}: {}", written.said), &written.files);
+        talk::wrote(&format!("frame {number}: {}", written.said(watch.elapsed())), &written.files);
         Ok(())
     }
 
-    /// Returns the factor on radiance in the PNG files; `None` if there are none.
+    /// Returns the look of the PNG files; `None` if there are none.
     ///
-    /// The factor depends on frames of the whole path, so that every part of the walk has the same factor. `number` is
+    /// The exposure depends on frames of the whole path, so that every part of the walk has the same. `number` is
     /// the frame that needs it.
-    fn factor(&mut self, number: usize, view: &View) -> Result<Option<f32>, Failure> {
-        let Some(exposure) = self.job.exposure.filter(|_| self.factor.is_none()) else {
-            return Ok(self.factor);
+    fn look(&mut self, number: usize, view: &View) -> Result<Option<Look>, Failure> {
+        let Some(tone) = self.job.tone.filter(|_| self.look.is_none()) else {
+            return Ok(self.look);
         };
-        let factor = match exposure {
+        let factor = match tone.exposure {
             Exposure::Auto => exposure::over_path(self.session, view.window.film, self.control).exp2(),
             Exposure::Ev(ev) => ev.exp2(),
         };
         if self.control.is_cancelled() {
             return Err(interrupted(number));
         }
-        self.factor = Some(factor);
-        Ok(self.factor)
+        self.look = Some(Look { factor, curve: tone.curve });
+        Ok(self.look)
     }
 
     /// Prints the remarks of a frame that no earlier frame had.

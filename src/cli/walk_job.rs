@@ -2,12 +2,12 @@
 
 use super::args::{StatsFormat, WalkArgs};
 use super::exit::Failure;
-use super::outputs::check_outputs;
+use super::outputs::{check_new, check_outputs};
 use super::plan_args::PlanArgs;
-use super::values::ProgressMode;
+use super::values::{ProgressMode, Resolution};
 use super::{job_key, threads};
 use anyhow::anyhow;
-use base::film::Exposure;
+use base::film::Tone;
 use readers::LoadOptions;
 use render::session::{Goal, PlanGoal, Session};
 use render::walk::chunk::{self, FrameChunk, Run};
@@ -32,8 +32,8 @@ pub struct WalkJob {
     pub resume: bool,
     /// True if the files must depend on scene and settings alone.
     pub reproducible: bool,
-    /// Exposure of the PNG files; `None` if there are none.
-    pub exposure: Option<Exposure>,
+    /// Exposure and view of the PNG files; `None` if there are none.
+    pub tone: Option<Tone>,
     /// Method and features.
     pub goal: Goal,
     /// Limits of the records that stay between frames.
@@ -45,7 +45,10 @@ pub struct WalkJob {
     /// Form of the messages on stderr.
     pub progress: ProgressMode,
     names: FileNames,
-    framing: Framing,
+    /// Film size instead of the scene's.
+    size: Option<Resolution>,
+    /// Part of the film, as offset and size in pixels.
+    crop: Option<[[u32; 2]; 2]>,
 }
 
 impl WalkJob {
@@ -68,6 +71,7 @@ impl WalkJob {
         args.picture.denoise.check(goal.denoises())?;
         let defaults = RetentionLimits::default();
         let bytes = args.memory_limit.map_or(defaults.bytes, |bytes| bytes.0);
+        let no_overwrite = args.picture.no_overwrite;
         let job = WalkJob {
             scene: args.scene,
             reading: args.picture.reading.options(),
@@ -75,7 +79,7 @@ impl WalkJob {
             chunk: args.chunk,
             resume: args.picture.resume,
             reproducible: args.picture.reproducible,
-            exposure: (!args.no_png).then_some(args.exposure),
+            tone: (!args.no_png).then_some(args.tone.tone()),
             goal,
             limits: RetentionLimits {
                 idle_frames: args.idle_frames,
@@ -87,17 +91,17 @@ impl WalkJob {
             stats: args.stats,
             progress: args.picture.progress,
             names: args.output,
-            framing: Framing {
-                frame: None,
-                resolution: args.picture.resolution.map(|r| r.0),
-                crop: args.picture.crop.map(|crop| [crop.offset, crop.size]),
-            },
+            size: args.picture.resolution,
+            crop: args.picture.crop.map(|crop| [crop.offset, crop.size]),
         };
         let listed = job.frames.iter().flat_map(FrameList::iter);
         // Without a list the first frame stands for all.
         for frame in listed.chain(job.frames.is_none().then_some(1)) {
             let (exr, png) = job.files(frame);
-            check_outputs(&exr, png.as_deref(), job.resume)?;
+            check_outputs(Some(&exr), png.as_deref(), job.resume)?;
+            if no_overwrite {
+                check_new([&exr].into_iter().chain(&png).map(PathBuf::as_path))?;
+            }
         }
         Ok(job)
     }
@@ -105,13 +109,19 @@ impl WalkJob {
     /// Returns the files of a frame: OpenEXR, and PNG if there is to be one.
     pub fn files(&self, frame: usize) -> (PathBuf, Option<PathBuf>) {
         let exr = self.names.of(frame);
-        let png = self.exposure.map(|_| exr.with_extension("png"));
+        let png = self.tone.map(|_| exr.with_extension("png"));
         (exr, png)
     }
 
     /// Returns the framing of a frame.
-    pub fn framing(&self, frame: usize) -> Framing {
-        Framing { frame: Some(frame), ..self.framing }
+    pub fn framing(&self, frame: usize, session: &Session) -> Framing {
+        Framing { frame: Some(frame), ..self.film(session) }
+    }
+
+    /// Returns film size and crop.
+    fn film(&self, session: &Session) -> Framing {
+        let resolution = self.size.map(|size| size.of(session.cameras.resolution));
+        Framing { frame: None, resolution, crop: self.crop }
     }
 
     /// Returns the numbers of the frames to render.
@@ -146,8 +156,8 @@ impl WalkJob {
             session,
             &self.goal,
             json!([
-                format!("{:?}", self.framing),
-                self.exposure.map(|exposure| exposure.to_string()),
+                format!("{:?}", self.film(session)),
+                self.tone.map(|tone| tone.to_string()),
                 format!("{:?}", self.limits),
                 self.reproducible,
             ]),

@@ -1,4 +1,5 @@
-//! Decoding of image files to linear colour: PNG, JPEG, BMP and TGA with the crate `image`, Radiance HDR, and OpenEXR.
+//! Decoding of image files to linear colour: PNG, JPEG, WebP, BMP and TGA with the crate `image`, Radiance HDR, and
+//! OpenEXR.
 //!
 //! Images of 8 or 16 bits are sRGB unless read raw. Floating-point images are linear. Alpha is dropped, as in Mitsuba.
 

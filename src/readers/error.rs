@@ -105,7 +105,7 @@ pub enum SceneError {
         error: std::io::Error,
     },
     /// A file whose extension belongs to no supported format.
-    #[error("{}: unknown kind of scene; name a .toml (native), .xml (Mitsuba), .glb or .gltf file", .0.display())]
+    #[error("{}: {}", .0.display(), way_out(.0))]
     UnknownFormat(PathBuf),
     /// Text that is not well-formed XML or TOML.
     #[error("{place}: {message}; correct the file's syntax")]
@@ -174,6 +174,37 @@ pub enum SceneError {
     /// A warning, under `strict`.
     #[error("{0} (an error because of strict reading); remove it, or read without strict")]
     Strict(Warning),
+}
+
+/// Returns what a file of an unknown format is, and how to get a scene from it.
+fn way_out(path: &Path) -> String {
+    let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
+    let from_blender =
+        "export glTF 2.0 (.glb) from Blender, with Include > Cameras and Punctual Lights ticked";
+    let (what, remedy) = match extension.as_str() {
+        "blend" => ("a file of Blender", from_blender.to_owned()),
+        "fbx" | "dae" | "3ds" | "abc" | "x3d" | "wrl" => {
+            ("a format that is not read", format!("import it in Blender, then {from_blender}"))
+        }
+        "usd" | "usda" | "usdc" | "usdz" => {
+            ("a USD scene, which is not read", format!("import it in Blender, then {from_blender}"))
+        }
+        "pbrt" => ("a scene of pbrt", "convert it to Mitsuba 3 (.xml), or export glTF 2.0 (.glb)".to_owned()),
+        "ma" | "mb" | "max" | "c4d" | "hip" | "skp" | "3dm" => {
+            ("a file of a modelling program", "export glTF 2.0 (.glb) from that program".to_owned())
+        }
+        "step" | "stp" | "iges" | "igs" => {
+            ("a CAD model without triangles", "export STL or glTF 2.0".to_owned())
+        }
+        "exr" | "png" | "jpg" | "jpeg" | "hdr" => {
+            ("an image, not a scene", "name a scene, and an image for its light with --env".to_owned())
+        }
+        _ => (
+            "an unknown kind of scene",
+            "name a .glb, .gltf, .obj, .ply, .stl, .toml (native) or .xml (Mitsuba) file".to_owned(),
+        ),
+    };
+    format!("this is {what}; {remedy}")
 }
 
 /// Maximum number of errors in one message.

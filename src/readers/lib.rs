@@ -23,6 +23,7 @@ mod finish;
 mod gltf;
 mod lacking_uvs;
 mod layers;
+mod lighting;
 mod mesh;
 #[cfg(test)]
 mod mirrored_tests;
@@ -42,6 +43,7 @@ mod sky;
 mod stand_in;
 mod statements;
 mod surfaces;
+mod viewpoint;
 
 use error::Log;
 use finish::{divide, recentre, sanitize, wanted};
@@ -51,8 +53,10 @@ use std::path::Path;
 pub use error::{Location, SceneError, Severity, Warning};
 pub use file::{fnv1a, read_regular};
 pub use finish::sanitize::SanitizeReport;
+pub use lighting::{EnvironmentChoice, Lighting, UpAxis};
 pub(crate) use mesh::smooth_normals;
 pub use options::LoadOptions;
+pub use viewpoint::Viewpoint;
 
 /// A scene, its cameras, and reports of reading it.
 #[derive(Clone, Debug)]
@@ -69,34 +73,46 @@ pub struct Loaded {
     pub hash: u64,
 }
 
-/// Reads the scene at `path`: `.toml` is native, `.xml` Mitsuba's, `.glb` and `.gltf` glTF.
+/// Reads the scene at `path`: `.toml` is native, `.xml` Mitsuba's, `.glb` and `.gltf` glTF. `.obj`, `.ply` and `.stl`
+/// are meshes alone.
+///
+/// A glTF file or mesh without a lamp gets a default sky, unless the options say otherwise.
 ///
 /// # Errors
 /// If a file cannot be read or decoded, or the scene is invalid. Under [`LoadOptions::strict`] also if a feature is not
 /// modelled.
 pub fn load(path: &Path, options: &LoadOptions) -> Result<Loaded, SceneError> {
-    let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase());
+    let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
     let mut log = Log::new(options.strict);
-    let plan = match extension.as_deref() {
-        Some("toml") => {
+    let is_model = !matches!(extension.as_str(), "toml" | "xml");
+    let mut plan = match extension.as_str() {
+        "toml" => {
             options.no_choice(path)?;
             native::read(path, &mut log)?
         }
-        Some("xml") => mitsuba::read(path, options, &mut log)?,
-        Some("glb" | "gltf") => {
+        "xml" => mitsuba::read(path, options, &mut log)?,
+        "glb" | "gltf" => {
             options.no_parameters(path)?;
             gltf::read(path, options, &mut log)?
         }
+        "obj" | "ply" | "stl" => {
+            options.no_choice(path)?;
+            native::read_model(path, &extension, &mut log)?
+        }
         _ => return Err(SceneError::UnknownFormat(path.to_owned())),
     };
+    // Models for printing and from computer-aided design stand on z.
+    let up = options.up.or((extension == "stl").then_some(UpAxis::Z));
+    options.lighting.apply(&mut plan.contents, up.unwrap_or(UpAxis::Y), is_model, path, &mut log)?;
     let (mut draft, hash) = plan.realise(&mut log)?;
     let hash = options.hash(hash);
     wanted::choose(&mut draft, &mut log)?;
+    options.viewpoint.apply(&mut draft, up, &Location::file(path))?;
     let (repairs, coordinates) = sanitize::sanitize(&mut draft, &mut log)?;
     divide::divide(&mut draft, &coordinates);
     let (scene, cameras) = recentre::recentre(draft, &coordinates);
     if scene.is_dark() {
-        let fallback = "the image will be black; add an emitter, a light or an environment";
+        let fallback = "the image will be black; add light with --env sky, or a lamp to the scene";
         log.warn(&Location::file(path), "the scene has no light that is modelled", fallback)?;
     }
     Ok(Loaded { scene, cameras, warnings: log.into_warnings(), repairs, hash })

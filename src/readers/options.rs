@@ -2,10 +2,12 @@
 
 use crate::error::{Location, SceneError};
 use crate::file::fnv1a;
+use crate::lighting::{Lighting, UpAxis};
+use crate::viewpoint::Viewpoint;
 use std::path::Path;
 
 /// Options for reading a scene.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct LoadOptions {
     /// True if warnings of [`Severity::Warning`](crate::Severity::Warning) are errors.
     pub strict: bool,
@@ -13,6 +15,12 @@ pub struct LoadOptions {
     pub camera: Option<String>,
     /// Names and values of a Mitsuba scene's `$parameters`. They replace the defaults of the scene.
     pub parameters: Vec<(String, String)>,
+    /// Light in addition to that of the scene, or in place of it.
+    pub lighting: Lighting,
+    /// Changes of the camera.
+    pub viewpoint: Viewpoint,
+    /// Upward axis for light and camera; `None` stands for z for STL files, and for y otherwise.
+    pub up: Option<UpAxis>,
 }
 
 impl LoadOptions {
@@ -34,9 +42,14 @@ impl LoadOptions {
 
     /// Returns the hash of a scene with these options; `files` is the hash of its files.
     pub(crate) fn hash(&self, files: u64) -> u64 {
-        if self.camera.is_none() && self.parameters.is_empty() {
+        let LoadOptions { strict: _, camera, parameters, lighting, viewpoint, up } = self;
+        if *self == (LoadOptions { strict: self.strict, ..LoadOptions::default() }) {
             return files;
         }
-        fnv1a(format!("{files} {:?} {:?}", self.camera, self.parameters).as_bytes())
+        if *lighting == Lighting::default() && *viewpoint == Viewpoint::default() && up.is_none() {
+            return fnv1a(format!("{files} {camera:?} {parameters:?}").as_bytes());
+        }
+        let added = format!("{lighting:?} {viewpoint:?} {up:?}");
+        fnv1a(format!("{files} {camera:?} {parameters:?} {added}").as_bytes())
     }
 }

@@ -59,7 +59,7 @@ impl Contents {
             MeshSource::Ready(raw) => raw.triangles.len(),
             MeshSource::Shared(raw) => raw.triangles.len(),
             // These are counted when the file is read.
-            MeshSource::Obj(..) | MeshSource::Ply(_) | MeshSource::Serialized(..) => 0,
+            MeshSource::Obj(..) | MeshSource::Ply(_) | MeshSource::Stl(_) | MeshSource::Serialized(..) => 0,
         };
         self.budget.take(triangles, &plan.place)?;
         self.meshes.push(plan);
@@ -133,6 +133,7 @@ pub enum MeshSource {
     /// File, and the objects and groups to read.
     Obj(PathBuf, PartSelection),
     Ply(PathBuf),
+    Stl(PathBuf),
     /// File, and index of the mesh in it.
     Serialized(PathBuf, usize),
     Ready(RawMesh),

@@ -175,7 +175,10 @@ impl Contents {
         };
         for (i, mesh) in self.meshes.iter().enumerate() {
             match &mesh.geometry {
-                MeshSource::Obj(path, _) | MeshSource::Ply(path) | MeshSource::Serialized(path, _) => {
+                MeshSource::Obj(path, _)
+                | MeshSource::Ply(path)
+                | MeshSource::Stl(path)
+                | MeshSource::Serialized(path, _) => {
                     add(path, Task::Mesh(i, mesh));
                 }
                 MeshSource::Ready(_) | MeshSource::Shared(_) => {}
@@ -205,7 +208,10 @@ impl Contents {
             match &plan.geometry {
                 MeshSource::Ready(raw) => *made = finish_mesh(plan, raw.clone(), &mut Vec::new()),
                 MeshSource::Shared(raw) => *made = finish_mesh(plan, RawMesh::clone(raw), &mut Vec::new()),
-                MeshSource::Obj(path, _) | MeshSource::Ply(path) | MeshSource::Serialized(path, _) => {
+                MeshSource::Obj(path, _)
+                | MeshSource::Ply(path)
+                | MeshSource::Stl(path)
+                | MeshSource::Serialized(path, _) => {
                     if made.iter().all(|mesh| mesh.triangles.is_empty()) {
                         let what = format!("no triangles or polygons are found in {}", path.display());
                         log.warn(&plan.place, what, "the mesh is left out; repair or re-export it")?;
@@ -277,6 +283,7 @@ fn perform(task: &Task, bytes: &[u8], path: &Path, budget: &TriangleBudget) -> R
             let raw = match &plan.geometry {
                 MeshSource::Obj(_, selection) => mesh::obj::read(bytes, path, selection, &mut remarks)?,
                 MeshSource::Ply(_) => mesh::ply::read(bytes, path, &mut remarks)?,
+                MeshSource::Stl(_) => mesh::stl::read(bytes, path)?,
                 MeshSource::Serialized(_, index) => {
                     mesh::serialized::read(bytes, *index, path, &mut remarks)?
                 }

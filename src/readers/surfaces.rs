@@ -1,5 +1,6 @@
 //! Meshes of a plan in world coordinates, with the material of each part.
 
+use crate::attributes::{COLOUR, find};
 use crate::draft::DraftMesh;
 use crate::error::Warning;
 use crate::mesh::material_parts::split_by_material;
@@ -22,8 +23,16 @@ pub(crate) fn finish_mesh(plan: &MeshPlan, raw: RawMesh, remarks: &mut Vec<Warni
             vec![(plan.name.clone(), Appearance { material: *material, emission: None }, raw)]
         }
         MaterialPlan::ByName(appearances, other) => {
+            let has_colours = find(&raw.attributes, COLOUR).is_some();
             let parts = split_by_material(raw);
-            remarks.extend(undefined_materials(plan, appearances, parts.iter().map(|part| part.0.as_str())));
+            // Faces without a material show the colours of their vertices.
+            let is_bare = |name: &&str| !(has_colours && name.is_empty());
+            let names = parts.iter().map(|part| part.0.as_str()).filter(is_bare);
+            let fallback = match has_colours {
+                true => "the colours of the vertices stand in",
+                false => "a grey of 0.5 stands in",
+            };
+            remarks.extend(undefined_materials(plan, appearances, names, fallback));
             let unknown = Appearance { material: *other, emission: None };
             let appearance = |name: &str| appearances.get(name).copied().unwrap_or(unknown);
             let named =
@@ -55,11 +64,12 @@ fn fill_uvs(uvs: &mut [Vec2]) -> bool {
     fills
 }
 
-/// Returns the warning about parts whose material is not defined.
+/// Returns the warning about parts whose material is not defined; `fallback` stands in.
 fn undefined_materials<'a>(
     plan: &MeshPlan,
     defined: &BTreeMap<String, Appearance>,
     parts: impl Iterator<Item = &'a str>,
+    fallback: &str,
 ) -> Option<Warning> {
     let missing: Vec<&str> = parts.filter(|name| !defined.contains_key(*name)).collect();
     let named: Vec<&&str> = missing.iter().filter(|name| !name.is_empty()).collect();
@@ -76,5 +86,5 @@ fn undefined_materials<'a>(
             format!("materials that \"{mesh}\" uses are not in its libraries: {}", listed.join(", "))
         }
     };
-    Some(Warning::new(plan.place.clone(), what, "a grey of 0.5 stands in"))
+    Some(Warning::new(plan.place.clone(), what, fallback))
 }

@@ -28,7 +28,7 @@ png = "out/preview.png"
 
 [[picture]]
 scene = "room.xml"
-output = "nowhere/a.exr"
+output = "nowhere/deep/a.exr"
 "#;
 
 fn sandbox(jobs: &str) -> Sandbox {
@@ -148,4 +148,20 @@ fn two_entries_that_would_write_one_file_are_refused_with_their_lines() {
     }
     let apart = [("w.##.exr", "frames = '1'"), ("w.##.exr", "frames = '2'")];
     batch(&sandbox(&jobs(apart)), &[]).expect(0);
+}
+
+#[test]
+fn entries_are_listed_and_chosen_by_their_numbers() {
+    let sandbox = sandbox(JOBS);
+    let listed = batch(&sandbox, &["--list"]).expect(0).stdout;
+    let lines: Vec<&str> = listed.lines().collect();
+    assert_eq!(lines.len(), 5);
+    assert_eq!(lines[3], "4\troom.xml\tout/crop.exr");
+    batch(&sandbox, &["--only", "4"]).expect(0);
+    let mut files: Vec<_> =
+        fs::read_dir(sandbox.path("out")).unwrap().map(|entry| entry.unwrap().file_name()).collect();
+    files.sort();
+    assert_eq!(files, ["crop.exr", "preview.png"]);
+    let stderr = batch(&sandbox, &["--only", "2,6"]).expect(2).stderr;
+    assert!(stderr.contains("no entry 6") && stderr.contains("have 5"), "{stderr}");
 }

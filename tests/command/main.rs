@@ -4,6 +4,7 @@ mod batch;
 mod bench;
 mod compare;
 mod denoise;
+mod first_picture;
 mod interrupt;
 mod memory;
 mod merge;

@@ -196,7 +196,7 @@ fn wrong_names_ranges_and_scenes_are_errors_and_nothing_is_written() {
     assert!(error("1", &["--time", "3s"], 2).contains("--time"));
     let named = |name: &str| sandbox.run(&["walk", "path.toml", "-o", name, "--frames", "1"]);
     assert!(named("f/a.exr").expect(2).stderr.contains("####"));
-    assert!(named("none/a.#.exr").expect(4).stderr.contains("does not exist"));
+    assert!(named("none/none/a.#.exr").expect(4).stderr.contains("does not exist"));
     let pathless = sandbox.run(&["walk", "room.xml", "-o", "f/a.#.exr"]).expect(2).stderr;
     assert!(pathless.contains("no camera path") && pathless.contains("[camera.path]"), "{pathless}");
     assert_eq!(frames(&sandbox), [""; 0]);

@@ -26,6 +26,7 @@ mod glossy;
 mod lightcuts;
 mod many_lights;
 mod mitsuba;
+mod models;
 mod obj_materials;
 mod occluder_cache;
 mod opacity;

@@ -17,10 +17,12 @@ pub mod heatmap;
 mod layer;
 mod layers;
 mod leftovers;
+mod look;
 pub mod metrics;
 mod png;
 pub mod sharpen;
 pub mod tone;
+mod tone_curve;
 mod window;
 
 pub use error::ImageError;
@@ -29,8 +31,10 @@ pub use exr_read::{ExrFile, read_exr};
 pub use exr_write::write_exr;
 pub use layer::{Layer, Pixels, Preview, SAMPLES};
 pub use layers::{CameraMatrices, Fact, Film, Metadata};
+pub use look::{Look, Tone};
 pub use png::{write_png, write_srgb8};
 pub use tone::{Exposure, display, srgb_slope};
+pub use tone_curve::ToneCurve;
 pub use window::Window;
 
 use crate::math::{Rgb, luminance};

@@ -1,17 +1,18 @@
 //! 8-bit sRGB PNG files for display.
 
-use super::{Image, ImageError, atomic, tone};
+use super::look::Look;
+use super::{Image, ImageError, atomic};
 use ::image::codecs::png::PngEncoder;
 use ::image::{ExtendedColorType, ImageEncoder, ImageError as EncodeError};
 use std::io;
 use std::path::Path;
 
-/// Writes `image` times `factor`, clipped at 1 and sRGB-encoded, to `path`, completely or not at all.
+/// Writes the display values of `image` to `path`, completely or not at all.
 ///
 /// # Errors
 /// If writing fails.
-pub fn write_png(path: &Path, image: &Image, factor: f32) -> Result<(), ImageError> {
-    write_srgb8(path, [image.width, image.height], &tone::to_srgb8(image, factor))
+pub fn write_png(path: &Path, image: &Image, look: Look) -> Result<(), ImageError> {
+    write_srgb8(path, [image.width, image.height], &look.to_bytes(image))
 }
 
 /// Writes display values, row-major, three bytes per pixel, to `path`, completely or not at all.
@@ -33,6 +34,7 @@ pub fn write_srgb8(path: &Path, size: [u32; 2], bytes: &[u8]) -> Result<(), Imag
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::film::ToneCurve;
     use crate::math::Rgb;
 
     #[test]
@@ -41,7 +43,7 @@ mod tests {
         let path = folder.path().join("a.png");
         let mut image = Image::new(2, 1);
         image.pixels = vec![Rgb::new(0.25, 0.0, f32::NAN), Rgb::new(0.5, 2.0, -1.0)];
-        write_png(&path, &image, 2.0).unwrap();
+        write_png(&path, &image, Look { factor: 2.0, curve: ToneCurve::Standard }).unwrap();
         let read = ::image::open(&path).unwrap().into_rgb8();
         assert_eq!(read.dimensions(), (2, 1));
         // 0.5 in sRGB is 0.7354, 188 of 255.

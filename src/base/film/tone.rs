@@ -1,4 +1,4 @@
-//! Tone mapping: exposure, clip at 1, sRGB.
+//! Exposure, and the standard view: clip at 1, sRGB.
 //!
 //! Units: display values are in [0, 1], encoded with the sRGB curve.
 
@@ -115,7 +115,7 @@ pub fn display(radiance: Rgb, factor: f32) -> Rgb {
     Rgb::new(srgb_encode(exposed.x), srgb_encode(exposed.y), srgb_encode(exposed.z))
 }
 
-/// Converts the image to 8-bit sRGB, row-major, three bytes per pixel.
+/// Converts the image to 8-bit sRGB, clipped at 1, row-major, three bytes per pixel.
 pub fn to_srgb8(image: &Image, factor: f32) -> Vec<u8> {
     let quantise = |value: f32| (value * 255.0 + 0.5) as u8;
     image.pixels.iter().flat_map(|&p| display(p, factor).to_array().map(quantise)).collect()

@@ -2,7 +2,7 @@
 //! levels of a benchmark. [`choices!`] declares an enum that can be the type of a setting.
 //!
 //! [`Settings::each`] visits all settings of a struct. Command-line options and their help, reports in statistics and
-//! files, benchmarks, and the table in the README derive from it.
+//! files, benchmarks, and the page `docs/cli.md` derive from it.
 
 mod help;
 mod shared;

@@ -1,7 +1,7 @@
 //! A picture, with the times of its steps and the numbers of its rays.
 
 use crate::measure::Clock;
-use base::film::{Film, write_exr, write_png};
+use base::film::{Film, Look, ToneCurve, write_exr, write_png};
 use base::progress::Control;
 use base::stats::{Counter, Stage, Stats};
 use render::method::Method;
@@ -100,5 +100,6 @@ impl Picture {
 fn write(film: &Film) -> Result<(), String> {
     let folder = tempfile::tempdir().map_err(|error| error.to_string())?;
     write_exr(&folder.path().join("a.exr"), film).map_err(|error| error.to_string())?;
-    write_png(&folder.path().join("a.png"), &film.color, 1.0).map_err(|error| error.to_string())
+    let look = Look { factor: 1.0, curve: ToneCurve::default() };
+    write_png(&folder.path().join("a.png"), &film.color, look).map_err(|error| error.to_string())
 }

@@ -19,6 +19,15 @@ pub fn outlook(up: DVec3) -> DVec3 {
     level * elevation.cos() + up * elevation.sin()
 }
 
+/// Returns the middle of the bounding box of all vertices; the origin without vertices.
+pub fn middle(draft: &Draft) -> DVec3 {
+    let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+    for p in draft.meshes.iter().flat_map(|mesh| &mesh.positions).filter(|p| p.is_finite()) {
+        (low, high) = (low.min(*p), high.max(*p));
+    }
+    if low.cmple(high).all() { 0.5 * low + 0.5 * high } else { DVec3::ZERO }
+}
+
 /// Moves a camera with `fits` to the nearest point from which it sees all vertices.
 ///
 /// The direction and field of view stay. Without vertices the camera moves to `centre`.

@@ -100,6 +100,9 @@ impl GltfFile {
             vector
         };
         let size = N * size;
+        if let Some(bytes) = self.decoded(index) {
+            return Ok(bytes.chunks_exact(size).map(decode).collect());
+        }
         let mut vectors: Vec<[T; N]> = match accessor.buffer_view {
             Some(view) => {
                 let offset = accessor.byte_offset.unwrap_or_default();

@@ -35,7 +35,9 @@ impl<'a> Container<'a> {
 
     /// Parses the JSON of glTF 2.0.
     pub fn root(&self, place: &Location) -> Result<Root, SceneError> {
-        let root: Root = serde_json::from_slice(self.json).map_err(|error| {
+        let parsed =
+            serde_json::from_slice(self.json).or_else(|error| without_pointers(self.json).ok_or(error));
+        let root: Root = parsed.map_err(|error| {
             if is_old(self.json) {
                 return place.wrong("this is a file of glTF 1.0", CONVERT);
             }
@@ -89,6 +91,16 @@ fn chunks<'a>(bytes: &'a [u8], place: &Location) -> Result<Container<'a>, SceneE
     // Some exporters pad the text with zeros instead of spaces.
     let end = json.iter().rposition(|&byte| byte != 0).map_or(0, |last| last + 1);
     Ok(Container { json: &json[..end], binary, is_text: false })
+}
+
+/// Parses JSON after the channels of animations that move no node are taken out; `None` if there are none.
+fn without_pointers(json: &[u8]) -> Option<Root> {
+    let mut value: Value = serde_json::from_slice(json).ok()?;
+    for animation in value.get_mut("animations")?.as_array_mut()? {
+        let channels = animation.get_mut("channels")?.as_array_mut()?;
+        channels.retain(|channel| channel.pointer("/target/node").is_some());
+    }
+    serde_json::from_slice(&serde_json::to_vec(&value).ok()?).ok()
 }
 
 /// True if JSON is that of glTF 1.0, whose lists are objects.

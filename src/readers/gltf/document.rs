@@ -1,15 +1,23 @@
 //! A file with its buffers, and the look-up of its objects.
 
 use super::container::Container;
+use super::draco;
+use super::meshopt;
+use super::statements;
 use crate::error::{Location, SceneError};
 use crate::file::{fnv1a, folder_of, read_file};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
+use gltf_json::accessor::Accessor;
 use gltf_json::{Index, Root, buffer, root::Get};
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 /// Extensions that are read, at least in part.
-const KNOWN: [&str; 12] = [
+const KNOWN: [&str; 16] = [
+    "EXT_meshopt_compression",
+    "EXT_texture_webp",
+    "KHR_draco_mesh_compression",
     "KHR_lights_punctual",
     "KHR_materials_anisotropy",
     "KHR_materials_clearcoat",
@@ -21,6 +29,7 @@ const KNOWN: [&str; 12] = [
     "KHR_materials_unlit",
     "KHR_materials_volume",
     "KHR_mesh_quantization",
+    "KHR_meshopt_compression",
     "KHR_texture_transform",
 ];
 
@@ -33,7 +42,13 @@ pub(super) struct GltfFile {
     pub folder: PathBuf,
     /// Files read, with the hash of the bytes of each.
     pub sources: Vec<(PathBuf, u64)>,
+    /// Statements that are not read.
+    pub unread: statements::Unread,
     buffers: Vec<Vec<u8>>,
+    /// Bytes of compressed buffer views, by index.
+    views: BTreeMap<usize, Vec<u8>>,
+    /// Bytes of accessors of compressed primitives, by index.
+    accessors: BTreeMap<usize, Vec<u8>>,
 }
 
 impl GltfFile {
@@ -48,13 +63,20 @@ impl GltfFile {
             root,
             folder: folder_of(path).to_owned(),
             sources: vec![(path.to_owned(), fnv1a(&bytes))],
+            unread: statements::unread(container.json),
             buffers: Vec::new(),
+            views: BTreeMap::new(),
+            accessors: BTreeMap::new(),
             place,
         };
         for i in 0..document.root.buffers.len() {
             let buffer = document.buffer(i, container.binary)?;
             document.buffers.push(buffer);
         }
+        let views = meshopt::views(&document.root, &document.buffers);
+        document.views = views.map_err(|what| document.wrong(what))?;
+        let accessors = draco::accessors(&document.root, |view| document.view(view).ok());
+        document.accessors = accessors.map_err(|what| document.wrong(what))?;
         Ok(document)
     }
 
@@ -69,12 +91,20 @@ impl GltfFile {
 
     /// Returns the bytes of a view of a buffer.
     pub fn view(&self, index: Index<buffer::View>) -> Result<&[u8], SceneError> {
+        if let Some(bytes) = self.views.get(&index.value()) {
+            return Ok(bytes);
+        }
         let view = self.get(index, "buffer view")?;
         let buffer = self.buffers.get(view.buffer.value()).map_or(&[][..], Vec::as_slice);
         let start = view.byte_offset.unwrap_or_default().0 as usize;
         let end = start.checked_add(view.byte_length.0 as usize);
         let bytes = end.and_then(|end| buffer.get(start..end));
         bytes.ok_or_else(|| self.wrong(format!("buffer view {} reaches beyond its buffer", index.value())))
+    }
+
+    /// Returns the bytes of an accessor's elements, without gaps, if they come from a compressed primitive.
+    pub fn decoded(&self, index: Index<Accessor>) -> Option<&[u8]> {
+        self.accessors.get(&index.value()).map(Vec::as_slice)
     }
 
     /// Returns the bytes in a data URI, or the path of the file that a URI names.
@@ -93,6 +123,9 @@ impl GltfFile {
     }
 
     fn buffer(&mut self, i: usize, binary: Option<&[u8]>) -> Result<Vec<u8>, SceneError> {
+        if meshopt::is_placeholder(&self.root, i) {
+            return Ok(Vec::new());
+        }
         let buffer = &self.root.buffers[i];
         let length = buffer.byte_length.0;
         let mut bytes = match &buffer.uri {
@@ -125,18 +158,19 @@ fn check_extensions(root: &Root, place: &Location) -> Result<(), SceneError> {
     let unknown = root.extensions_required.iter().find(|name| !KNOWN.contains(&name.as_str()));
     let Some(name) = unknown else { return Ok(()) };
     let remedy = match name.as_str() {
-        "KHR_draco_mesh_compression" | "EXT_meshopt_compression" | "KHR_meshopt_compression" => {
-            "export the model without mesh compression"
+        "KHR_texture_basisu" | "EXT_texture_avif" | "MSFT_texture_dds" => {
+            "export textures as PNG, JPEG or WebP"
         }
-        "KHR_texture_basisu" | "EXT_texture_webp" | "EXT_texture_avif" => "export textures as PNG or JPEG",
         _ => "export the model without it",
     };
     Err(place.wrong(format!("the file requires the extension {name}, which is not supported"), remedy))
 }
 
-/// Returns the names of used extensions that are not read at all.
-pub(super) fn unread_extensions(root: &Root) -> impl Iterator<Item = &String> {
-    root.extensions_used.iter().filter(|name| !KNOWN.contains(&name.as_str()))
+/// Returns the names of extensions that are used, and neither read nor found in the file.
+pub(super) fn unread_extensions(document: &GltfFile) -> impl Iterator<Item = &String> {
+    let is_unread =
+        |name: &&String| !KNOWN.contains(&name.as_str()) && !document.unread.extensions.contains(*name);
+    document.root.extensions_used.iter().filter(is_unread)
 }
 
 fn percent_decoded(uri: &str) -> String {

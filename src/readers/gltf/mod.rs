@@ -1,11 +1,12 @@
-//! glTF 2.0, as text or binary: meshes by instance, metallic-roughness materials, punctual lights, and cameras with
-//! their animation.
+//! glTF 2.0, as text or binary: meshes by instance, in the pose of their skins and morph targets, metallic-roughness
+//! materials, punctual lights, and cameras with their animation.
 //!
 //! The data model is that of the crate `gltf-json`, the lower half of `gltf`. The upper half panics on wrong accessor
 //! types and missing accessors, and follows cycles of nodes. So the checks here look up objects and read accessors.
 //!
 //! Deviations: surfaces have two sides even if the file asks for culling. Instances of a mesh are copies. A warning
-//! names every unsupported feature and the objects that ask for it.
+//! names every unsupported feature and the objects that ask for it. Without tangents, the frames of normal maps are
+//! those of the triangles, not those of MikkTSpace.
 //!
 //! Units: see `light`.
 
@@ -14,15 +15,18 @@ mod animation;
 mod camera;
 mod container;
 mod document;
+mod draco;
 mod importer;
 mod light;
 mod material;
 mod mesh;
+mod meshopt;
 mod morph;
 mod nodes;
 mod pose;
 mod report;
 mod skin;
+mod statements;
 mod texture;
 mod volume;
 
@@ -106,7 +110,10 @@ pub fn import(
         importer.node(placed)?;
     }
     let mut report = importer.report;
-    for name in document::unread_extensions(&document.root) {
+    for (what, name) in &document.unread.findings {
+        report.lacks(what, "it is left out", name);
+    }
+    for name in document::unread_extensions(&document) {
         report.lacks(&format!("the extension {name} is not modelled"), "it is left out", "");
     }
     let is_posed = options.time.is_some();

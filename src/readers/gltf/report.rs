@@ -33,6 +33,7 @@ impl Findings {
     fn add(&mut self, what: &str, fallback: &'static str, changes_picture: bool, name: &str) {
         let same = |f: &&mut Finding| f.what == what && f.fallback == fallback;
         match self.findings.iter_mut().find(same) {
+            Some(finding) if finding.names.iter().any(|known| known == name) => {}
             Some(finding) => finding.names.push(name.to_owned()),
             None => {
                 let (what, names) = (what.to_owned(), vec![name.to_owned()]);

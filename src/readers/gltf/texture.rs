@@ -51,6 +51,15 @@ impl TextureUse {
     }
 }
 
+/// Returns the image of a texture: PNG or JPEG if there is one, else WebP.
+fn image_of(texture: &Texture) -> Option<Index<image::Image>> {
+    if texture.source.value() != u32::MAX as usize {
+        return Some(texture.source);
+    }
+    let webp = texture.extensions.as_ref()?.others.get("EXT_texture_webp")?;
+    Some(Index::new(u32::try_from(webp.get("source")?.as_u64()?).ok()?))
+}
+
 impl Importer<'_> {
     /// Returns the texture of the material `name`; `None` if its image format is not supported.
     pub(super) fn texture(
@@ -60,12 +69,12 @@ impl Importer<'_> {
         name: &str,
     ) -> Result<Option<TextureId>, SceneError> {
         let texture = self.document.get(slot.texture, "texture")?;
-        if texture.source.value() == u32::MAX as usize {
-            let what = "textures of other kinds than PNG and JPEG are not supported";
-            self.report.lacks(what, "they are left out", name);
+        let Some(index) = image_of(texture) else {
+            let what = "textures of other kinds than PNG, JPEG and WebP are not supported";
+            self.report.lacks(what, "they are left out; export them as one of these", name);
             return Ok(None);
-        }
-        let image = self.document.get(texture.source, "image")?;
+        };
+        let image = self.document.get(index, "image")?;
         let default = Sampler::default();
         let sampler = match texture.sampler {
             Some(index) => self.document.get(index, "sampler")?,
@@ -88,8 +97,8 @@ impl Importer<'_> {
             (Channel::AlphaFrom(cutoff), Filter::Bilinear) => (Channel::One(3), Filter::Cut(cutoff)),
             other => other,
         };
-        let image_name = image.name.clone().unwrap_or_else(|| format!("image {}", texture.source.value()));
-        let source = self.image(image, texture.source)?;
+        let image_name = image.name.clone().unwrap_or_else(|| format!("image {}", index.value()));
+        let source = self.image(image, index)?;
         let image = TextureSource::Part { name: image_name, source, channel };
         let to_uv = slot.to_uv();
         if !to_uv.is_finite() {

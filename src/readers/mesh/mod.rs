@@ -22,6 +22,7 @@ mod polygon;
 pub mod serialized;
 pub mod shapes;
 mod smooth;
+pub mod stl;
 mod wavefront;
 
 pub(crate) use smooth::vertex_normals as smooth_normals;

@@ -18,7 +18,7 @@ pub(super) fn statements(bytes: &[u8]) -> Statements<'_, impl Iterator<Item = &[
 }
 
 /// Returns the lines of a text without its byte-order mark. Lines end as on Unix, Windows or old Macintoshes.
-fn lines(bytes: &[u8]) -> impl Iterator<Item = &[u8]> {
+pub(super) fn lines(bytes: &[u8]) -> impl Iterator<Item = &[u8]> {
     let bytes = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes);
     let end = if bytes.contains(&b'\n') { b'\n' } else { b'\r' };
     bytes.split(move |&b| b == end)

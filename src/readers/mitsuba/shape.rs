@@ -132,7 +132,7 @@ impl Converter<'_> {
         shape.ignore(&["collapse", "silhouette_sampling_weight", "max_smooth_angle"]);
         shape.report_unused(self.log)?;
         let name = shape.id.clone().unwrap_or_else(|| match &geometry {
-            MeshSource::Obj(path, _) | MeshSource::Ply(path) => stem_of(path),
+            MeshSource::Obj(path, _) | MeshSource::Ply(path) | MeshSource::Stl(path) => stem_of(path),
             MeshSource::Serialized(path, index) => format!("{}@{index}", stem_of(path)),
             MeshSource::Ready(_) | MeshSource::Shared(_) => shape.plugin.clone(),
         });

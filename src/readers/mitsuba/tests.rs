@@ -211,7 +211,7 @@ fn parameters_and_sensors_are_chosen() {
     fs::write(&path, text).unwrap();
     let read = |camera: Option<&str>, parameters: &[(&str, &str)]| {
         let parameters = parameters.iter().map(|(a, b)| (a.to_string(), b.to_string())).collect();
-        load(&path, &LoadOptions { camera: camera.map(str::to_owned), parameters, strict: false })
+        load(&path, &LoadOptions { camera: camera.map(str::to_owned), parameters, ..LoadOptions::default() })
     };
     let fov = |loaded: Loaded| 2.0 * loaded.cameras.still.tan_half_x.atan().to_degrees();
     let near = |a: f32, b: f32| (a - b).abs() < 1e-3;

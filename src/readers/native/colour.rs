@@ -5,8 +5,8 @@
 
 use super::builder::SceneBuilder;
 use super::text::{AttributeText, ColourText, Number, TextureText};
-use crate::decode::srgb_to_linear;
 use crate::error::{Location, SceneError};
+use crate::lighting::hexadecimal;
 use base::math::Rgb;
 use glam::DVec3;
 use scene::Reflectance;
@@ -81,14 +81,4 @@ impl SceneBuilder<'_> {
             (colour, _) => Ok(Reflectance::Constant(colour.unwrap_or_default())),
         }
     }
-}
-
-/// Converts six hexadecimal digits in sRGB to linear colour.
-fn hexadecimal(digits: &str) -> Option<Rgb> {
-    if digits.len() != 6 || !digits.bytes().all(|b| b.is_ascii_hexdigit()) {
-        return None;
-    }
-    let code = u32::from_str_radix(digits, 16).ok()?;
-    let channel = |shift: u32| srgb_to_linear((code >> shift & 255) as f32 / 255.0);
-    Some(Rgb::new(channel(16), channel(8), channel(0)))
 }

@@ -125,10 +125,11 @@ impl SceneBuilder<'_> {
                 let geometry = match extension.as_deref() {
                     Some("obj") => MeshSource::Obj(path, selection(text)),
                     Some("ply") => MeshSource::Ply(path),
+                    Some("stl") => MeshSource::Stl(path),
                     Some("serialized") => MeshSource::Serialized(path, text.index.unwrap_or(0)),
                     _ => {
                         let what = format!("unknown kind of mesh file \"{file}\"");
-                        return Err(place.wrong(what, "use .glb, .gltf, .obj, .ply or .serialized"));
+                        return Err(place.wrong(what, "use .glb, .gltf, .obj, .ply, .stl or .serialized"));
                     }
                 };
                 Ok((name, geometry))
@@ -164,7 +165,7 @@ impl SceneBuilder<'_> {
     }
 
     /// Reads the materials of the OBJ's MTL files. They are assigned by name.
-    fn mtl_materials(
+    pub(super) fn mtl_materials(
         &mut self,
         path: &Path,
         place: &Location,

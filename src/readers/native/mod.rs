@@ -11,6 +11,7 @@ mod light;
 mod material;
 mod mesh;
 mod mistake;
+mod model;
 mod mtl;
 mod path;
 mod sky;
@@ -25,6 +26,8 @@ use scene::MaterialId;
 use source::SourceText;
 use std::path::Path;
 use text::SceneText;
+
+pub(crate) use model::read as read_model;
 
 /// Reads the description at `path`.
 pub(super) fn read(path: &Path, log: &mut Log) -> Result<ScenePlan, SceneError> {

@@ -289,9 +289,9 @@ fn colours_are_the_same_everywhere_and_images_only_where_the_page_says() {
 }
 
 #[test]
-fn the_tutorial_of_the_readme_loads_by_itself() {
-    let readme = include_str!("../../../README.md");
-    let (_, rest) = readme.split_once("<!-- tutorial -->\n```toml\n").unwrap();
+fn the_tutorial_loads_by_itself() {
+    let page = include_str!("../../../docs/first-scene.md");
+    let (_, rest) = page.split_once("<!-- tutorial -->\n```toml\n").unwrap();
     let text = rest.split("```").next().unwrap();
     assert!(text.lines().filter(|line| !line.is_empty()).count() <= 20);
     outcome(text).unwrap_or_else(|e| panic!("{e}"));

@@ -6,7 +6,7 @@ use glam::DVec3;
 use serde::Deserialize;
 use toml::Spanned;
 
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct SceneText {
     pub name: Option<String>,

@@ -2,8 +2,8 @@
 
 #[path = "../../../src/readers/gltf/tests/model.rs"]
 mod model;
-#[path = "../../../src/readers/gltf/tests/posed.rs"]
-mod posed;
+#[path = "../../../src/readers/gltf/tests/packed.rs"]
+mod packed;
 #[path = "../../../src/readers/gltf/tests/samples.rs"]
 mod samples;
 

@@ -1,7 +1,8 @@
 mod colours;
+mod compressed;
 mod container;
 mod model;
-mod posed;
+mod packed;
 mod samples;
 mod skin;
 mod slow_damage;

@@ -104,11 +104,18 @@ impl Model {
         self.push("extensionsUsed", json!(extension));
     }
 
+    /// Returns the binary file, whose one buffer is the binary chunk.
     pub fn glb(&self) -> Vec<u8> {
         let mut json = self.json.clone();
         if let (Some(object), false) = (json.as_object_mut(), self.binary.is_empty()) {
             object.insert("buffers".to_owned(), json!([{ "byteLength": self.binary.len() }]));
         }
+        Model { json, binary: self.binary.clone() }.glb_as_is()
+    }
+
+    /// Returns the binary file with the buffers that the JSON lists.
+    pub fn glb_as_is(&self) -> Vec<u8> {
+        let json = &self.json;
         let padded = |bytes: &[u8], with: u8| {
             let mut bytes = bytes.to_vec();
             bytes.resize(bytes.len().next_multiple_of(4), with);

@@ -1,7 +1,7 @@
 //! Tests of skins and morph targets.
 
 use super::model::Model;
-use super::posed::{IDENTITY, arm, face, shifted};
+use super::samples::{arm, face};
 use super::{bounds, load_beside, load_bytes};
 use crate::Loaded;
 use glam::Vec3;

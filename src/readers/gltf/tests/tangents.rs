@@ -1,7 +1,7 @@
 //! Tests of the tangents of vertices.
 
 use super::model::Model;
-use super::{load_bytes, posed};
+use super::{load_bytes, samples};
 use glam::{Vec3, Vec4};
 use serde_json::{Value, json};
 
@@ -60,7 +60,7 @@ fn mirrored_models_are_mirror_images() {
 
 #[test]
 fn tangents_follow_joints_and_morph_targets() {
-    let mut model = posed::arm();
+    let mut model = samples::arm();
     let relief = model.texture([[128, 128, 255, 255]; 4], json!({}));
     let material = model.push("materials", json!({ "normalTexture": { "index": relief } }));
     model.json["meshes"][0]["primitives"][0]["material"] = json!(material);

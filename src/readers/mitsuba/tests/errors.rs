@@ -207,10 +207,7 @@ fn a_scene_without_light_is_warned_of() {
         let loaded = load_body(&body).unwrap();
         assert_eq!(loaded.warnings.len(), warnings, "{:?}", loaded.warnings);
         let warning = loaded.warnings.last().unwrap();
-        assert!(
-            warning.what.contains("no light") && warning.fallback.contains("add an emitter"),
-            "{warning}"
-        );
+        assert!(warning.what.contains("no light") && warning.fallback.contains("--env sky"), "{warning}");
         assert!(load_with(&body, &[], true).unwrap_err().contains("strict"));
     }
     assert!(load_body(&format!("{SKY}{cube}")).unwrap().warnings.is_empty());

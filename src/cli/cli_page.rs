@@ -1,0 +1,111 @@
+//! The page `docs/cli.md`: all commands and options, from the definition of the command line.
+
+use super::args::Cli;
+use clap::builder::PossibleValue;
+use clap::{Arg, Command};
+use std::fs;
+
+const HEAD: &str = "\
+# Command line
+
+This page lists every command and option. `lightsplat COMMAND -h` shows the options that most people need, `--help` all.
+It is made from the definition of the options: `UPDATE_DOCS=1 cargo test -p cli --lib cli_page`.
+
+| exit code | meaning |
+|--:|---|
+| 0 | success |
+| 1 | rendering failed |
+| 2 | the arguments are invalid, or the scene lacks what they ask for |
+| 3 | a scene or an image is invalid |
+| 4 | the result cannot be written |
+| 5 | some images of a batch failed; the others are complete |
+| 75 | a signal stopped the run, which may be started again |
+| 130 | a second signal stopped the run at once |
+
+| environment variable | meaning |
+|---|---|
+| `OIDN_DIR` | folder of Open Image Denoise |
+| `EMBREE_DIR` | folder of Embree, for the build |
+";
+
+/// Returns the page.
+fn page() -> String {
+    let mut command = Cli::definition();
+    command.build();
+    let commands = command.get_subcommands().filter(|sub| sub.get_name() != "help");
+    HEAD.to_owned() + &commands.map(|sub| section(sub, "lightsplat", "##")).collect::<String>()
+}
+
+/// Returns the section of a command, with its own commands.
+fn section(command: &Command, parent: &str, level: &str) -> String {
+    let name = format!("{parent} {}", command.get_name());
+    let about = command.get_about().map(|about| about.to_string()).unwrap_or_default();
+    let mut text = format!("\n{level} `{name}`\n\n{about}.\n");
+    for arg in command.get_positionals() {
+        let [value, ..] = arg.get_value_names().unwrap_or_default() else { continue };
+        text += &format!("\n- `{value}`: {}.{}\n", help(arg), values(arg));
+    }
+    let mut heading = None;
+    for arg in command.get_arguments().filter(|arg| !arg.is_positional() && is_own(arg)) {
+        let of = arg.get_help_heading().map(str::to_owned);
+        if of != heading {
+            text += &format!("\n**{}**\n", of.as_deref().unwrap_or("Options"));
+            heading = of;
+        }
+        text += &option(arg);
+    }
+    let subs = command.get_subcommands().filter(|sub| sub.get_name() != "help");
+    text + &subs.map(|sub| section(sub, &name, &format!("{level}#"))).collect::<String>()
+}
+
+/// Returns true if an option is not the same for every command.
+fn is_own(arg: &Arg) -> bool {
+    !["help", "version"].contains(&arg.get_id().as_str())
+}
+
+/// Returns the entry of an option.
+fn option(arg: &Arg) -> String {
+    let short = arg.get_short().map_or(String::new(), |short| format!("`-{short}`, "));
+    let long = arg.get_long().unwrap_or_default();
+    let takes =
+        arg.get_action().takes_values() && arg.get_num_args().is_none_or(|range| range.max_values() > 0);
+    let value = arg.get_value_names().filter(|_| takes).and_then(|names| names.first());
+    let value = value.map_or(String::new(), |value| format!(" {value}"));
+    let aliases = arg.get_visible_aliases().unwrap_or_default();
+    let aliases: String = aliases.iter().map(|alias| format!(", `--{alias}`")).collect();
+    format!("\n- {short}`--{long}{value}`{aliases}: {}.{}\n", help(arg), values(arg))
+}
+
+/// Returns the help of an argument, without its full stop.
+fn help(arg: &Arg) -> String {
+    let text = arg.get_long_help().or(arg.get_help()).map(|help| help.to_string()).unwrap_or_default();
+    let default =
+        arg.get_default_values().iter().map(|value| value.to_string_lossy()).collect::<Vec<_>>().join(",");
+    let is_flag = !arg.get_action().takes_values();
+    let said = if default.is_empty() || is_flag { String::new() } else { format!(" [default: {default}]") };
+    text.trim_end_matches('.').replace('\n', " ").replace('<', "&lt;").replace('|', "\\|") + &said
+}
+
+/// Returns the possible values of an argument.
+fn values(arg: &Arg) -> String {
+    let is_shown = |value: &PossibleValue| !value.is_hide_set();
+    let values = arg.get_possible_values();
+    let listed =
+        values.iter().filter(|value| is_shown(value) && arg.get_action().takes_values()).map(|value| {
+            match value.get_help() {
+                Some(help) => format!("\n  - `{}`: {help}", value.get_name()),
+                None => format!("\n  - `{}`", value.get_name()),
+            }
+        });
+    listed.collect()
+}
+
+#[test]
+fn the_page_lists_every_command_and_option() {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/cli.md");
+    if std::env::var_os("UPDATE_DOCS").is_some() {
+        fs::write(path, page()).unwrap();
+    }
+    let found = fs::read_to_string(path).unwrap_or_default();
+    assert!(found == page(), "out of date: run UPDATE_DOCS=1 cargo test -p cli --lib cli_page");
+}

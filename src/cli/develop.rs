@@ -1,0 +1,38 @@
+//! `lightsplat develop`: makes a PNG of an OpenEXR image, with another exposure or view.
+
+use super::exit::{self, Failure};
+use super::outputs::{Inputs, check_outputs};
+use super::png_args::ToneArgs;
+use super::talk;
+use base::film::{ExrFile, write_png};
+use clap::Args;
+use std::path::PathBuf;
+
+/// Options of `develop`.
+#[derive(Debug, Args)]
+#[command(after_help = exit::HELP)]
+pub struct DevelopArgs {
+    /// Image to show (OpenEXR), of lightsplat or another renderer
+    pub input: PathBuf,
+    /// Image to write [default: the input with the extension .png]
+    #[arg(short, long, value_name = "FILE.png")]
+    output: Option<PathBuf>,
+    /// Exposure and view.
+    #[command(flatten)]
+    tone: ToneArgs,
+}
+
+/// Runs the command.
+pub fn run(args: DevelopArgs) -> Result<(), Failure> {
+    let output = args.output.unwrap_or_else(|| args.input.with_extension("png"));
+    check_outputs(None, Some(&output), false)?;
+    Inputs::new([&args.input]).check_apart([output.as_path()])?;
+    let color = ExrFile::read(&args.input).and_then(|file| file.color()).map_err(Failure::input)?;
+    let look = args.tone.tone().look(&color);
+    write_png(&output, &color, look).map_err(Failure::output)?;
+    let (path, stops, view) = (output.display(), look.stops(), look.curve.name());
+    let said =
+        format!("wrote {path} ({}x{}, exposure {stops:+.2} EV, view {view})", color.width, color.height);
+    talk::wrote(&said, &[output]);
+    Ok(())
+}

@@ -1,0 +1,85 @@
+//! `lightsplat generate`: prints completion scripts and the man page, from the definition of the options.
+
+use super::args::Cli;
+use super::exit::Failure;
+use super::talk;
+use anyhow::Context;
+use clap::{Args, ValueEnum};
+use clap_complete::{Shell, generate};
+use clap_mangen::Man;
+
+/// Name of the program.
+const NAME: &str = "lightsplat";
+
+/// Options of `generate`.
+#[derive(Debug, Args)]
+pub struct GenerateArgs {
+    /// Text to print
+    #[arg(value_enum)]
+    what: Artefact,
+}
+
+/// Text about the options.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Artefact {
+    /// Completions for bash
+    Bash,
+    /// Completions for zsh
+    Zsh,
+    /// Completions for fish
+    Fish,
+    /// The man page, with one section per command
+    Man,
+}
+
+/// Runs the command.
+pub fn run(args: GenerateArgs) -> Result<(), Failure> {
+    let mut bytes = Vec::new();
+    let shell = match args.what {
+        Artefact::Bash => Shell::Bash,
+        Artefact::Zsh => Shell::Zsh,
+        Artefact::Fish => Shell::Fish,
+        Artefact::Man => {
+            let page = man_page().context("cannot format the man page").map_err(Failure::output)?;
+            return talk::print_bytes(&page);
+        }
+    };
+    generate(shell, &mut Cli::definition(), NAME, &mut bytes);
+    talk::print_bytes(&bytes)
+}
+
+/// Returns the man page: the program, then the options of each command.
+fn man_page() -> std::io::Result<Vec<u8>> {
+    let mut command = Cli::definition();
+    command.build();
+    let mut page = Vec::new();
+    Man::new(command.clone()).render(&mut page)?;
+    for sub in command.get_subcommands().filter(|sub| sub.get_name() != "help") {
+        let name = format!("{NAME} {}", sub.get_name());
+        let man = Man::new(sub.clone().name(name.clone()).bin_name(name.clone()));
+        page.extend(format!(".SH \"{}\"\n", name.to_uppercase()).bytes());
+        man.render_description_section(&mut page)?;
+        man.render_options_section(&mut page)?;
+    }
+    Ok(page)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_man_page_and_completions_know_every_command() {
+        let page = String::from_utf8(man_page().unwrap()).unwrap();
+        for sub in Cli::definition().get_subcommands() {
+            let name = sub.get_name();
+            assert!(page.contains(&format!("LIGHTSPLAT {}", name.to_uppercase())), "{name}");
+            for shell in [Shell::Bash, Shell::Zsh, Shell::Fish] {
+                let mut bytes = Vec::new();
+                generate(shell, &mut Cli::definition(), NAME, &mut bytes);
+                assert!(String::from_utf8_lossy(&bytes).contains(name), "{shell} {name}");
+            }
+        }
+        assert!(page.contains("env") && page.contains("no\\-overwrite"));
+    }
+}

@@ -1,0 +1,156 @@
+//! Options of reading a scene: its camera and light, and changes of both.
+
+use clap::{Args, ValueEnum};
+use glam::DVec3;
+use readers::{EnvironmentChoice, Lighting, LoadOptions, UpAxis, Viewpoint};
+
+/// Options of reading a scene.
+#[derive(Clone, Debug, Default, Args)]
+#[command(next_help_heading = "Scene, light and camera")]
+pub struct ReadingArgs {
+    /// Environment in place of the scene's own: a latitude-longitude image (EXR, HDR), a colour (0.5, R,G,B or
+    /// #rrggbb), or a clear sky with its sun (sky, or sky,AZIMUTH,ELEVATION in degrees; azimuth 0 is the front, 90 the
+    /// right)
+    #[arg(long, value_name = "FILE|COLOUR|sky")]
+    env: Option<EnvironmentChoice>,
+    /// Rotation of --env about the upward axis in degrees, counter-clockwise seen from above
+    #[arg(long, value_name = "DEGREES", requires = "env", value_parser = angle)]
+    env_rotate: Option<f64>,
+    /// Leave a model without a lamp dark, instead of adding a sky
+    #[arg(long)]
+    no_default_light: bool,
+    /// Camera of the scene: its number, counted from 1, or its name [default: 1]
+    #[arg(short, long, value_name = "N|NAME")]
+    camera: Option<String>,
+    /// Position of the camera, in the units of the scene; without --look-at it looks at the middle of the scene
+    #[arg(long, value_name = "X,Y,Z", value_parser = point, allow_hyphen_values = true)]
+    look_from: Option<DVec3>,
+    /// Point that the camera looks at
+    #[arg(long, value_name = "X,Y,Z", value_parser = point, allow_hyphen_values = true)]
+    look_at: Option<DVec3>,
+    /// Horizontal field of view in degrees
+    #[arg(long, value_name = "DEGREES", value_parser = angle)]
+    fov: Option<f64>,
+    /// Azimuth of a camera that sees the whole scene, in degrees: 0 is in front, 90 on the right
+    #[arg(long, value_name = "DEGREES", value_parser = angle, conflicts_with_all = ["look_from", "look_at"])]
+    azimuth: Option<f64>,
+    /// Elevation of that camera above the horizon in degrees
+    #[arg(long, value_name = "DEGREES", value_parser = elevation, conflicts_with_all = ["look_from", "look_at"])]
+    elevation: Option<f64>,
+    /// Upward axis for the options above [default: y; z for STL]
+    #[arg(long, value_enum, value_name = "AXIS")]
+    up: Option<Axis>,
+    /// Value of `$NAME` in a Mitsuba scene, which replaces its `<default>`; may be repeated
+    #[arg(short = 'D', long = "define", value_name = "NAME=VALUE", value_parser = definition)]
+    define: Vec<(String, String)>,
+    /// Fail, instead of warning, if the scene has an unsupported feature or the image is black
+    #[arg(long)]
+    pub strict: bool,
+}
+
+/// Upward axis.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Axis {
+    /// The front of the scene is +z
+    Y,
+    /// The front of the scene is -y
+    Z,
+}
+
+/// Azimuth and elevation of the default camera, in degrees.
+const AROUND: [f64; 2] = [30.0, 20.0];
+
+impl ReadingArgs {
+    /// Returns the options of the scene reader.
+    pub fn options(self) -> LoadOptions {
+        let around = match (self.azimuth, self.elevation) {
+            (None, None) => None,
+            (azimuth, elevation) => Some([azimuth.unwrap_or(AROUND[0]), elevation.unwrap_or(AROUND[1])]),
+        };
+        LoadOptions {
+            strict: self.strict,
+            camera: self.camera,
+            parameters: self.define,
+            lighting: Lighting {
+                environment: self.env,
+                rotation: self.env_rotate.unwrap_or(0.0),
+                no_default: self.no_default_light,
+            },
+            viewpoint: Viewpoint { from: self.look_from, at: self.look_at, fov: self.fov, around },
+            up: self.up.map(|axis| match axis {
+                Axis::Y => UpAxis::Y,
+                Axis::Z => UpAxis::Z,
+            }),
+        }
+    }
+}
+
+fn definition(text: &str) -> Result<(String, String), String> {
+    let (name, value) = text.split_once('=').ok_or("write NAME=VALUE")?;
+    if name.is_empty() { Err("the name is empty".into()) } else { Ok((name.to_owned(), value.to_owned())) }
+}
+
+fn number(text: &str) -> Option<f64> {
+    text.trim().parse().ok().filter(|number: &f64| number.is_finite())
+}
+
+fn angle(text: &str) -> Result<f64, String> {
+    number(text).filter(|angle| angle.abs() <= 36e3).ok_or_else(|| "expected an angle in degrees".to_owned())
+}
+
+fn elevation(text: &str) -> Result<f64, String> {
+    let angle = number(text).filter(|angle| angle.abs() <= 90.0);
+    angle.ok_or_else(|| "expected an angle from -90 to 90 degrees".to_owned())
+}
+
+fn point(text: &str) -> Result<DVec3, String> {
+    let numbers: Option<Vec<f64>> = text.split(',').map(number).collect();
+    match numbers.as_deref() {
+        Some(&[x, y, z]) => Ok(DVec3::new(x, y, z)),
+        _ => Err("expected three numbers like 0,1.5,-4".to_owned()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::Parser;
+
+    #[derive(Debug, Parser)]
+    struct Alone {
+        #[command(flatten)]
+        reading: ReadingArgs,
+    }
+
+    fn options(words: &str) -> Result<LoadOptions, String> {
+        let parsed = Alone::try_parse_from(["x"].into_iter().chain(words.split_whitespace()));
+        parsed.map(|alone| alone.reading.options()).map_err(|error| error.to_string())
+    }
+
+    #[test]
+    fn light_and_camera_reach_the_reader() {
+        let found =
+            options("--env sky,10,20 --env-rotate 90 --look-from -1,2,3 --look-at 0,0,0 --fov 60 --up z");
+        let found = found.unwrap();
+        assert_eq!(found.lighting.environment, Some(EnvironmentChoice::Sky([10.0, 20.0])));
+        assert_eq!((found.lighting.rotation, found.up), (90.0, Some(UpAxis::Z)));
+        assert_eq!(found.viewpoint.from, Some(DVec3::new(-1.0, 2.0, 3.0)));
+        assert_eq!(options("--azimuth=-45").unwrap().viewpoint.around, Some([-45.0, 20.0]));
+        assert_eq!(options("").unwrap(), LoadOptions::default());
+    }
+
+    #[test]
+    fn wrong_light_and_cameras_are_refused() {
+        for bad in [
+            "--env -1",
+            "--env-rotate 3",
+            "--look-from 1,2",
+            "--azimuth 1 --look-from 1,2,3",
+            "--elevation 91",
+            "--fov x",
+            "--up x",
+        ] {
+            assert!(options(bad).is_err(), "{bad}");
+        }
+    }
+}

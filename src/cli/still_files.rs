@@ -1,0 +1,133 @@
+//! Files of a still: OpenEXR, PNG, or both, or one of them on standard output.
+
+use super::args::RenderArgs;
+use super::exit::Failure;
+use super::outputs::{self, check_name};
+use super::{picture, talk};
+use anyhow::{Context, anyhow};
+use base::film::Tone;
+use clap::ValueEnum;
+use render::walk::names;
+use std::ffi::OsStr;
+use std::fs;
+use std::num::NonZeroUsize;
+use std::path::{Path, PathBuf};
+use tempfile::TempDir;
+
+/// Format of an image on standard output.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum ImageFormat {
+    /// Tone-mapped PNG
+    #[default]
+    Png,
+    /// 32-bit float OpenEXR
+    Exr,
+}
+
+/// Files of a still. At least one of both is written.
+#[derive(Debug)]
+pub struct StillFiles {
+    /// OpenEXR file.
+    pub exr: Option<PathBuf>,
+    /// PNG file, with its exposure and view.
+    pub png: Option<(PathBuf, Tone)>,
+    /// Folder that holds the file until it is copied to standard output.
+    piped: Option<TempDir>,
+}
+
+impl StillFiles {
+    /// Returns the files that the arguments ask for.
+    ///
+    /// # Errors
+    /// If a name has a wrong extension, or options exclude each other.
+    pub fn new(args: &RenderArgs) -> Result<StillFiles, Failure> {
+        let tone = args.png.tone.tone();
+        let Some(output) = &args.output else {
+            let exr = Path::new(args.scene.file_stem().unwrap_or(OsStr::new("image"))).with_extension("exr");
+            let png = args.png.file(&exr).map(|path| (path, tone));
+            return Ok(StillFiles { exr: Some(exr), png, piped: None });
+        };
+        let alone = |what: &str| match args.png.names_a_file() || args.png.leaves_out() {
+            true => {
+                Err(Failure::usage(anyhow!("{what} goes with neither --png nor --no-png; leave them out")))
+            }
+            false => Ok(()),
+        };
+        if output.as_os_str() == "-" {
+            alone("-o -")?;
+            if args.stats.is_some() {
+                return Err(Failure::usage(anyhow!(
+                    "-o - and --stats both write to standard output; leave one out"
+                )));
+            }
+            let folder =
+                tempfile::tempdir().context("cannot make a temporary folder").map_err(Failure::output)?;
+            let (exr, png) = match args.format {
+                ImageFormat::Exr => (Some(folder.path().join("image.exr")), None),
+                ImageFormat::Png => (None, Some((folder.path().join("image.png"), tone))),
+            };
+            return Ok(StillFiles { exr, png, piped: Some(folder) });
+        }
+        let output = &numbered("--output", output, args.frame)?;
+        let extension = output.extension().map(|extension| extension.to_string_lossy().to_lowercase());
+        if extension.as_deref() == Some("png") {
+            alone("a PNG alone")?;
+            return Ok(StillFiles { exr: None, png: Some((output.clone(), tone)), piped: None });
+        }
+        check_name(output, "exr", "--output", "for OpenEXR, or in .png for a PNG alone")?;
+        let png = args.png.file(output).map(|path| numbered("--png", &path, args.frame)).transpose()?;
+        let png = png.map(|path| (path, tone));
+        Ok(StillFiles { exr: Some(output.clone()), png, piped: None })
+    }
+
+    /// Returns the file that stands for all in messages.
+    pub fn main(&self) -> &Path {
+        let png = self.png.as_ref().map(|(path, _)| path.as_path());
+        self.exr.as_deref().or(png).unwrap_or(Path::new("-"))
+    }
+
+    /// Lists the files.
+    pub fn paths(&self) -> impl Iterator<Item = &Path> {
+        self.exr.as_deref().into_iter().chain(self.png.as_ref().map(|(path, _)| path.as_path()))
+    }
+
+    /// Checks that the files can be written. Existing ones may have to stay as they are (see
+    /// [`outputs::check_outputs`]).
+    pub fn check(&self, may_stay: bool, no_overwrite: bool) -> Result<(), Failure> {
+        let png = self.png.as_ref().map(|(path, _)| path.as_path());
+        outputs::check_outputs(self.exr.as_deref(), png, may_stay)?;
+        if no_overwrite { outputs::check_new(self.paths()) } else { Ok(()) }
+    }
+
+    /// Returns the files of an image. A partial image gets files beside them if these may be complete.
+    pub fn of_image(&self, is_complete: bool) -> StillFiles {
+        let main = self.main();
+        let stays = !is_complete && main.exists() && !picture::is_partial(main);
+        let place = |path: &PathBuf| if stays { picture::beside(path) } else { path.clone() };
+        StillFiles {
+            exr: self.exr.as_ref().map(place),
+            png: self.png.as_ref().map(|(path, tone)| (place(path), *tone)),
+            piped: None,
+        }
+    }
+
+    /// Reports the written files, or copies the image to standard output.
+    ///
+    /// # Errors
+    /// If standard output cannot be written.
+    pub fn deliver(&self, said: &str, files: &[PathBuf]) -> Result<(), Failure> {
+        if self.piped.is_none() {
+            talk::wrote(said, files);
+            return Ok(());
+        }
+        let bytes = fs::read(self.main()).context("cannot read the image").map_err(Failure::output)?;
+        talk::print_bytes(&bytes)
+    }
+}
+
+/// Returns a path with the number of the frame where it has a place for it; `option` names it in messages.
+fn numbered(option: &str, path: &Path, frame: Option<NonZeroUsize>) -> Result<PathBuf, Failure> {
+    let frame = frame.map(NonZeroUsize::get);
+    names::numbered(path, frame)
+        .map_err(|what| Failure::usage(anyhow!("{option} {}: {what}", path.display())))
+}
