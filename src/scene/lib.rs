@@ -14,6 +14,7 @@ mod mesh;
 mod parameter;
 mod pixel_filter;
 mod principled;
+mod projector;
 mod relief;
 pub mod requirements;
 mod statistics;
@@ -24,12 +25,13 @@ use std::path::PathBuf;
 
 pub use attribute::{Attribute, AttributeId, AttributeValues, interpolated};
 pub use camera::{Camera, Cameras, MAX_FRAMES, MAX_SIDE, Projection};
-pub use light::{DeltaLight, DistantDisc, Environment, EnvironmentMap};
+pub use light::{DeltaLight, DistantDisc, Environment, EnvironmentMap, SpotImage};
 pub use material::{Blend, Coat, Distribution, Fresnel, Lobe, Material, MaterialId};
 pub use mesh::{Emission, Mesh};
 pub use parameter::{Parameter, Reflectance, Roughness, Share};
 pub use pixel_filter::PixelFilter;
 pub use principled::{Principled, Stretch, eta_of_specular};
+pub use projector::{FovAxis, Projector};
 pub use relief::Relief;
 pub use requirements::Requirements;
 pub use texture::{AttributeTexture, Filter, Texels, Texture, TextureId, Textures, Wrap};
@@ -56,7 +58,7 @@ pub struct Scene {
     pub materials: Vec<Material>,
     /// Textures, indexed by [`TextureId`].
     pub textures: Textures,
-    /// Point, spot and directional lights.
+    /// Point, spot and directional lights, and projectors.
     pub lights: Vec<DeltaLight>,
     /// Light from infinitely far, in all directions.
     pub environment: Option<Environment>,

@@ -1,7 +1,9 @@
-//! Delta lights (point, spot and directional lights), distant discs, and the environment.
+//! Delta lights (point, spot and directional lights, projectors), distant discs, and the environment.
 //!
 //! For light from surfaces see [`super::Emission`].
 
+use super::projector::Projector;
+use super::texture::TextureId;
 use base::math::Rgb;
 use glam::{Mat3, Vec3};
 
@@ -28,6 +30,15 @@ pub enum DeltaLight {
         inner_angle: f32,
         /// Half angle beyond which the intensity is zero, radians.
         outer_angle: f32,
+        /// Image that the intensity is a multiple of, if any; `outer_angle` is then below π/2.
+        image: Option<SpotImage>,
+    },
+    /// An image that is projected from a point.
+    Projector {
+        /// Position relative to the scene's centre.
+        position: Vec3,
+        /// The image and its rays.
+        projector: Projector,
     },
     /// Parallel light from infinitely far.
     Directional {
@@ -36,6 +47,15 @@ pub enum DeltaLight {
         /// Irradiance on a surface facing the light, W/m².
         irradiance: Rgb,
     },
+}
+
+/// Image before a spot light. The cone of `outer_angle` meets its edges.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SpotImage {
+    /// The image.
+    pub texture: TextureId,
+    /// Rotation of world directions to the light's frame: z along the axis, x to the right of the image, y down.
+    pub to_local: Mat3,
 }
 
 /// An evenly emitting disc at infinite distance, such as the sun.

@@ -48,6 +48,12 @@ pub struct Principled {
     pub clearcoat: Share,
     /// Gloss of the clear coat: 0 for satin (α = 0.1), 1 for gloss (α = 0.001).
     pub clearcoat_gloss: f32,
+    /// Share of the diffuse light that goes to the other side, if the material is a thin sheet, as in Mitsuba's plugin
+    /// `principledthin`.
+    ///
+    /// Both sides of a sheet are alike. Transmitted light keeps its direction, but for the roughness. There is no metal
+    /// and no clear coat. Only the share `spec_trans` has specular reflection.
+    pub thin: Option<Share>,
 }
 
 /// Effect of an anisotropy `a` on microfacets of roughness α.
@@ -98,6 +104,7 @@ impl Default for Principled {
             sheen_tint: none,
             clearcoat: none,
             clearcoat_gloss: 0.0,
+            thin: None,
         }
     }
 }
@@ -121,7 +128,8 @@ impl Principled {
     pub fn is_textured(&self) -> bool {
         let shares = [self.metallic, self.roughness, self.spec_tint, self.spec_trans, self.sheen]
             .into_iter()
-            .chain([self.sheen_tint, self.clearcoat, self.anisotropic]);
+            .chain([self.sheen_tint, self.clearcoat, self.anisotropic])
+            .chain(self.thin);
         self.base_color.is_textured()
             || shares.into_iter().any(|share| matches!(share, Parameter::Textured { .. }))
     }

@@ -37,7 +37,7 @@ pub struct MaterialKinds {
 /// Light trees that are not empty.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Trees {
-    /// Point and spot lights.
+    /// Point and spot lights, and projectors.
     pub omni: bool,
     /// Area lights.
     pub oriented: bool,
@@ -155,7 +155,9 @@ impl Requirements {
         for light in &scene.lights {
             r.lights += 1;
             match light {
-                DeltaLight::Point { .. } | DeltaLight::Spot { .. } => r.trees.omni = true,
+                DeltaLight::Point { .. } | DeltaLight::Spot { .. } | DeltaLight::Projector { .. } => {
+                    r.trees.omni = true;
+                }
                 DeltaLight::Directional { .. } => r.trees.directional = true,
             }
         }

@@ -24,6 +24,10 @@ pub struct Specular {
     pub(super) has_delta_lobes: bool,
     /// True if a surface scatters light to its other side in more than isolated directions.
     pub(super) scatter_across: bool,
+    /// See [`Specular::store_light`].
+    pub(super) store_light: bool,
+    /// True if some surface scatters light into more than isolated directions.
+    pub(super) spread_light: bool,
 }
 
 impl Specular {
@@ -47,12 +51,20 @@ impl Specular {
             boxes
         };
         let delta_boxes = boxes(&by_delta);
+        let some = |is_such: &dyn Fn(&Bsdf) -> bool| {
+            scene.meshes.iter().any(|mesh| {
+                let bsdf = average(mesh);
+                !mesh.triangles.is_empty() && (is_such(bsdf) || bsdf.is_of_mean_roughness())
+            })
+        };
         Specular {
             meshes,
             boxes: boxes(&bends),
             has_delta_lobes: !delta_boxes.is_empty(),
             delta_boxes: Boxes16::new(&delta_boxes),
             scatter_across: averages.iter().any(Bsdf::scatters_across),
+            store_light: some(&|bsdf: &Bsdf| bsdf.stores_light()),
+            spread_light: some(&|bsdf: &Bsdf| bsdf.has_smooth()),
         }
     }
 
@@ -60,6 +72,16 @@ impl Specular {
     #[inline]
     pub fn scatter_across(&self) -> bool {
         self.scatter_across
+    }
+
+    /// Returns true if a surface reflects light diffusely, so that photons and virtual lights are stored on it.
+    pub fn store_light(&self) -> bool {
+        self.store_light
+    }
+
+    /// Returns true if a surface scatters light into more than isolated directions.
+    pub fn spread_light(&self) -> bool {
+        self.spread_light
     }
 
     /// Returns true if a surface bends light by delta lobes or is of rough glass.

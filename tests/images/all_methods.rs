@@ -5,11 +5,11 @@
 
 use crate::kit::*;
 use crate::oracle::{assert_means_within, mean};
-use glam::{DVec3, Vec2, Vec3};
+use glam::{DVec3, Mat3, Vec2, Vec3};
 use lightsplat::math::Rgb;
 use lightsplat::scene::{
-    Attribute, AttributeId, AttributeValues, DeltaLight, DistantDisc, Emission, Environment, Filter,
-    Material, MaterialId, Mesh, Reflectance, Scene, Share, Texture, Wrap,
+    Attribute, AttributeId, AttributeValues, DeltaLight, DistantDisc, Emission, Environment, Filter, FovAxis,
+    Material, MaterialId, Mesh, Principled, Projector, Reflectance, Scene, Share, SpotImage, Texture, Wrap,
 };
 use std::f32::consts::PI;
 
@@ -23,7 +23,7 @@ const TOLERANCE: f64 = 0.03;
 type NamedScene = (&'static str, fn() -> WorldAndView);
 
 /// Scenes of mean 1, each with the reason.
-const SCENES: [NamedScene; 18] = [
+const SCENES: [NamedScene; 20] = [
     ("nothing before a sky of radiance 1", || {
         let mut scene = scene(camera(Vec3::ZERO, Vec3::X, 0.5), [8, 8]);
         scene.environment = Some(Environment::Constant(Rgb::ONE));
@@ -40,6 +40,16 @@ const SCENES: [NamedScene; 18] = [
         furnace(|scene| {
             let material = add_material(scene, mirror());
             scene.meshes.push(sphere(Vec3::new(0.1, 0.0, -0.2), 0.3, 24, material));
+        })
+    }),
+    ("a white sheet in that room that transmits all its light, which is not seen either", || {
+        furnace(|scene| {
+            let base_color = Reflectance::Constant(Rgb::ONE);
+            let sheet = Principled { base_color, thin: Some(1.0.into()), ..Principled::default() };
+            let principled = Some(Box::new(sheet));
+            let sheet = Material { two_sided: true, principled, ..diffuse(Rgb::ZERO) };
+            let material = add_material(scene, sheet);
+            scene.meshes.push(quad(Vec3::new(-0.3, -0.3, -0.2), Vec3::X * 0.7, Vec3::Y * 0.6, material));
         })
     }),
     ("a floor under a sky of radiance 1 / albedo", || {
@@ -75,7 +85,31 @@ const SCENES: [NamedScene; 18] = [
                 intensity: Rgb::splat(IRRADIANCE * dist_sq / cos),
                 inner_angle: 0.2,
                 outer_angle: 0.4,
+                image: None,
             });
+        })
+    }),
+    ("a floor under a spot light through an image of a half", || {
+        floor(|scene| {
+            let texture = add_texture(scene, texture(1, &[Rgb::splat(0.5)]));
+            scene.lights.push(DeltaLight::Spot {
+                position: Vec3::Y * 2.0,
+                direction: Vec3::NEG_Y,
+                intensity: Rgb::splat(2.0 * IRRADIANCE * 4.0),
+                inner_angle: 0.3,
+                outer_angle: 0.4,
+                image: Some(SpotImage { texture, to_local: downwards() }),
+            });
+        })
+    }),
+    ("a floor under a projector: I / height²", || {
+        floor(|scene| {
+            // 1 / cos³ of the intensity and the distance cancel: the place is off the axis.
+            let position = Vec3::new(0.0, 2.0, 1.5);
+            let intensity = Rgb::splat(IRRADIANCE * 4.0);
+            let (to_local, axis) = (downwards(), FovAxis::X);
+            let projector = Projector { intensity, texture: None, to_local, tan_half: 1.0, axis };
+            scene.lights.push(DeltaLight::Projector { position, projector });
         })
     }),
     ("a floor under light from one direction: E cos", || {
@@ -197,6 +231,11 @@ fn with_attribute(mut mesh: Mesh, values: AttributeValues) -> Mesh {
 
 /// Irradiance of a floor whose radiance is 1.
 const IRRADIANCE: f32 = PI / ALBEDO;
+
+/// Rotation of world directions to the frame of a light that shines downwards.
+fn downwards() -> Mat3 {
+    Mat3::from_cols(Vec3::X, Vec3::Z, Vec3::NEG_Y).transpose()
+}
 
 /// A closed room whose walls emit 1 - albedo, so that the radiance is 1 everywhere.
 fn furnace(add: impl FnOnce(&mut Scene)) -> WorldAndView {

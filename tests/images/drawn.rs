@@ -52,7 +52,14 @@ const LIGHTS: [Light; 6] = [
         let position = Vec3::new(0.5, 0.8, 0.5);
         let (direction, intensity) = (-position.normalize(), Rgb::new(2.0, 1.5, 1.0));
         let (inner_angle, outer_angle) = (0.3, 0.7);
-        scene.lights.push(DeltaLight::Spot { position, direction, intensity, inner_angle, outer_angle });
+        scene.lights.push(DeltaLight::Spot {
+            position,
+            direction,
+            intensity,
+            inner_angle,
+            outer_angle,
+            image: None,
+        });
     }),
     ("sun", |scene| {
         let direction = Vec3::new(0.2, -0.5, 1.0).normalize();

@@ -41,6 +41,7 @@ fn lights_without_a_surface_are_exact() {
             intensity: Rgb::new(3.0, 2.0, 1.0),
             inner_angle: 0.1,
             outer_angle: 0.5,
+            image: None,
         },
         DeltaLight::Directional {
             direction: Vec3::new(1.0, -1.0, 0.0).normalize(),

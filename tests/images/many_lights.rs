@@ -48,6 +48,7 @@ fn building(count: usize, size: u32) -> WorldAndView {
                 intensity: Rgb::splat(power),
                 inner_angle: 0.4,
                 outer_angle: 0.7,
+                image: None,
             }),
             _ => {
                 let radiance = power / (std::f32::consts::PI * size * size);

@@ -101,6 +101,7 @@ fn point_spot_and_directional_lights_give_the_irradiance_of_their_definition() {
         intensity,
         inner_angle: 0.2,
         outer_angle: 0.4,
+        image: None,
     };
     expect_floor(&floor_under(|s| s.lights.push(spot(aim))), 10.0 * cos / dist_sq);
     // Aimed 0.3 rad aside, half-way through the falloff.

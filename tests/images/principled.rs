@@ -7,7 +7,8 @@ use lightsplat::math::Rgb;
 use lightsplat::method::{lightcuts, photon_cache};
 use lightsplat::scene::{Material, Principled, Reflectance};
 
-/// A room with a ball of varnished paint, of metal, and of frosted glass, on walls that are principled, too.
+/// A room with a ball of varnished paint, of metal, of frosted glass, and of leaves, on walls that are
+/// principled, too, but for the leaves.
 fn rooms() -> Vec<(WorldAndView, &'static str)> {
     let colour = |r, g, b| Reflectance::Constant(Rgb::new(r, g, b));
     let material = |parameters| Material { principled: Some(Box::new(parameters)), ..diffuse(Rgb::ZERO) };
@@ -33,7 +34,19 @@ fn rooms() -> Vec<(WorldAndView, &'static str)> {
         scene.materials[0] = Material { two_sided: true, ..material(wall) };
         world(scene)
     };
-    vec![(room(paint), "varnished paint"), (room(metal), "metal"), (room(glass), "frosted glass")]
+    let leaf = Principled {
+        base_color: colour(0.5, 0.8, 0.3),
+        thin: Some(0.6.into()),
+        spec_trans: 0.3.into(),
+        ..Principled::default()
+    };
+    let leaf = Material { two_sided: true, ..material(leaf) };
+    vec![
+        (room(paint), "varnished paint"),
+        (room(metal), "metal"),
+        (room(glass), "frosted glass"),
+        (room_with_ball(Some(leaf)), "a leaf"),
+    ]
 }
 
 #[test]

@@ -12,7 +12,8 @@ use crate::draft::{Draft, DraftCamera, DraftMesh};
 use base::math::Rgb;
 use glam::{DVec3, Vec3};
 use scene::{
-    Attribute, AttributeId, Camera, Cameras, DeltaLight, MAX_RATIO, Material, Mesh, Projection, Relief, Scene,
+    Attribute, AttributeId, Camera, Cameras, DeltaLight, MAX_RATIO, Material, Mesh, Projection, Projector,
+    Relief, Scene,
 };
 
 /// Approximate number of corners that are sampled to compute the vicinity.
@@ -187,9 +188,13 @@ fn place_light(light: DeltaLight, world: DVec3, coordinates: &LocalCoordinates) 
         DeltaLight::Point { intensity, .. } => {
             DeltaLight::Point { position, intensity: coordinates.local_intensity(intensity) }
         }
-        DeltaLight::Spot { direction, intensity, inner_angle, outer_angle, .. } => {
+        DeltaLight::Spot { direction, intensity, inner_angle, outer_angle, image, .. } => {
             let intensity = coordinates.local_intensity(intensity);
-            DeltaLight::Spot { position, direction, intensity, inner_angle, outer_angle }
+            DeltaLight::Spot { position, direction, intensity, inner_angle, outer_angle, image }
+        }
+        DeltaLight::Projector { projector, .. } => {
+            let intensity = coordinates.local_intensity(projector.intensity);
+            DeltaLight::Projector { position, projector: Projector { intensity, ..projector } }
         }
         directional @ DeltaLight::Directional { .. } => directional,
     }

@@ -50,7 +50,14 @@ pub(super) fn read(
             }
             let what = "the edges of spot lights are linear in the angle, not smooth in its cosine";
             report.note(what, "their penumbras differ a little", name);
-            DeltaLight::Spot { position, direction, intensity: power, inner_angle: inner, outer_angle: outer }
+            DeltaLight::Spot {
+                position,
+                direction,
+                intensity: power,
+                inner_angle: inner,
+                outer_angle: outer,
+                image: None,
+            }
         }
         _ => return Err(document.wrong(format!("{name} is of no known type"))),
     };

@@ -1,8 +1,10 @@
 //! Typed access to the properties of an object. Any property that is asked for counts as supported.
 
+use super::statements::fate_of_parameter;
 use super::tree::{Object, ObjectProperty};
 use super::value::PropertyValue;
 use crate::error::{Log, SceneError};
+use crate::statements::Fate;
 use glam::{DMat4, DVec3};
 
 impl Object {
@@ -74,20 +76,17 @@ impl Object {
         }
     }
 
-    /// Marks parameters as supported that have no effect here.
-    pub fn ignore(&self, names: &[&str]) {
-        names.iter().for_each(|name| _ = self.property(name));
-    }
-
-    /// Warns of every property and child that no converter has asked for.
+    /// Warns of every property and child that no converter has asked for, except for those without effect.
     pub fn report_unused(&self, log: &mut Log) -> Result<(), SceneError> {
         let of = || format!("of {} \"{}\" is not modelled", self.tag, self.plugin);
-        for property in self.properties.iter().filter(|p| !p.used.replace(true)) {
+        let matters = |name: &str| fate_of_parameter(&self.tag, &self.plugin, name) != Fate::NoEffect;
+        let unused = self.properties.iter().filter(|p| !p.used.replace(true));
+        for property in unused.filter(|p| matters(&p.name)) {
             log.warn(&property.place, format!("\"{}\" {}", property.name, of()), "it is ignored")?;
         }
         for child in self.children.iter().filter(|c| !c.used.replace(true)) {
-            let name = child.name.as_deref().unwrap_or("a child");
-            log.warn(&child.place, format!("\"{name}\" {}", of()), "it is ignored")?;
+            let name = child.name.as_deref().map_or("a child".to_owned(), |name| format!("\"{name}\""));
+            log.warn(&child.place, format!("{name} {}", of()), "it is ignored")?;
         }
         Ok(())
     }

@@ -65,22 +65,16 @@ impl Converter<'_> {
                 diffuse(name, self.reflectance(bsdf, parameter, 0.5)?)
             }
             "roughdiffuse" => {
-                bsdf.ignore(&["alpha", "use_fast_approx"]);
-                self.log.warn(&bsdf.place, "a rough diffuse surface is not modelled", "it is Lambertian")?;
+                let what = "the bsdf \"roughdiffuse\" is not modelled";
+                self.log.warn(&bsdf.place, what, "it is Lambertian")?;
                 diffuse(name, self.reflectance(bsdf, "reflectance", 0.5)?)
             }
-            "difftrans" => {
-                self.log.warn(
-                    &bsdf.place,
-                    "diffuse transmission is not modelled",
-                    "the surface reflects it",
-                )?;
-                diffuse(name, self.reflectance(bsdf, "transmittance", 0.5)?)
-            }
+            "difftrans" => self.diffuse_transmitter(bsdf, name)?,
             "plastic" | "roughplastic" => self.plastic(bsdf, name)?,
             "conductor" | "roughconductor" => self.conductor(bsdf, name)?,
             "dielectric" | "thindielectric" | "roughdielectric" => self.dielectric(bsdf, name)?,
             "principled" => self.principled(bsdf, name)?,
+            "principledthin" => self.principled_thin(bsdf, name)?,
             "phong" | "ward" => self.classic_glossy(bsdf, name)?,
             "null" => {
                 let white = Reflectance::Constant(Rgb::ONE);
@@ -179,9 +173,10 @@ impl Converter<'_> {
         let named = if normals { self.document.named(bsdf, "normalmap")? } else { None };
         let texture = match named {
             Some(texture) => Some(texture),
-            None => self.tagged(bsdf, "texture")?.into_iter().next(),
+            None => self.only(bsdf, "texture")?,
         };
         let scale = bsdf.float("scale")?.unwrap_or(1.0) as f32;
+        self.name_relief_rules(bsdf)?;
         let found = texture.map(|texture| self.texture(&texture, 0)).transpose()?;
         let relief = match found {
             Some(Reflectance::Textured { texture, .. }) if !self.contents.is_image(texture) => {
@@ -205,6 +200,27 @@ impl Converter<'_> {
             )?;
         }
         Ok(Material { relief: relief.or(nested.relief), ..nested })
+    }
+
+    /// Names two rules for normals that lean away from the viewer. Mitsuba 3 applies them unless they are off.
+    fn name_relief_rules(&mut self, bsdf: &Object) -> Result<(), SceneError> {
+        if self.document.is_old {
+            return Ok(());
+        }
+        let mut applied = Vec::new();
+        for name in ["flip_invalid_normals", "use_shadowing_function"] {
+            let (is_given, is_on) = (bsdf.has(name), bsdf.boolean(name, true)?);
+            if is_given && is_on {
+                self.log.warn(&bsdf.place, format!("\"{name}\" is not modelled"), "it is off")?;
+            } else if is_on {
+                applied.push(name);
+            }
+        }
+        if !applied.is_empty() {
+            let what = format!("{} of {} are not modelled", applied.join(" and "), bsdf.plugin);
+            self.log.note(&bsdf.place, what, "the relief is up to 1 % darker or brighter");
+        }
+        Ok(())
     }
 
     /// Returns nested BSDFs, each with its share of the light. The remaining share is absorbed.
@@ -248,14 +264,10 @@ impl Converter<'_> {
     }
 
     fn nested(&mut self, bsdf: &Object, depth: u32) -> Result<Material, SceneError> {
-        let nested = self.tagged(bsdf, "bsdf")?;
-        let Some(first) = nested.first() else {
+        let Some(first) = self.only(bsdf, "bsdf")? else {
             let what = format!("the bsdf \"{}\" holds no other", bsdf.plugin);
             return Err(bsdf.place.wrong(what, "nest a <bsdf> or a <ref> to one"));
         };
-        if let (Some(second), "twosided") = (nested.get(1), bsdf.plugin.as_str()) {
-            self.log.warn(&second.place, "different sides are not modelled", "the first bsdf is on both")?;
-        }
-        self.material(first, depth + 1)
+        self.material(&first, depth + 1)
     }
 }

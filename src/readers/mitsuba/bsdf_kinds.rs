@@ -99,7 +99,6 @@ impl Converter<'_> {
         let (distribution, alpha) = if bsdf.plugin == "phong" {
             (Distribution::Ggx, (1.0 / (bsdf.positive("exponent", 30.0)? + 2.0)).sqrt())
         } else {
-            bsdf.ignore(&["variant"]);
             let alpha = (bsdf.positive("alpha_u", 0.1)? * bsdf.positive("alpha_v", 0.1)?).sqrt();
             (Distribution::Beckmann, alpha)
         };
@@ -138,8 +137,6 @@ impl Converter<'_> {
         if self.share(bsdf, "flatness", 0.0)? != Share::Constant(0.0) {
             self.log.warn(&bsdf.place, "flatness is not modelled", "it is left out")?;
         }
-        bsdf.ignore(&["main_specular_sampling_rate", "clearcoat_sampling_rate"]);
-        bsdf.ignore(&["diffuse_reflectance_sampling_rate"]);
         Ok(Material { name, principled: Some(Box::new(principled)), ..Material::default() })
     }
 
@@ -171,7 +168,6 @@ impl Converter<'_> {
                 return Err(bsdf.place.wrong(what, "use beckmann or ggx"));
             }
         };
-        bsdf.ignore(&["sample_visible"]);
         let alpha = if bsdf.has("alpha_u") || bsdf.has("alpha_v") {
             [self.alpha(bsdf, "alpha_u")?, self.alpha(bsdf, "alpha_v")?]
         } else {

@@ -35,13 +35,20 @@ impl Converter<'_> {
         }
     }
 
+    /// Warns of properties of the scene itself, which has none.
+    pub fn report_unused(&mut self) -> Result<(), SceneError> {
+        // Children of the scene are converted where something refers to them.
+        self.document.root.children.iter().for_each(|child| child.used.set(true));
+        self.document.root.report_unused(self.log)
+    }
+
     fn part(&mut self, child: &ChildObject) -> Result<(), SceneError> {
         let object = self.document.object(child)?;
         match object.tag.as_str() {
             "shape" => self.shape(&object, DMat4::IDENTITY),
             "emitter" => self.scene_emitter(&object),
             // `shot` reads sensors and integrators. The others are read where an object refers to them.
-            "sensor" | "integrator" | "bsdf" | "texture" | "scene" => Ok(()),
+            "sensor" | "integrator" | "bsdf" | "texture" => Ok(()),
             tag => self.log.warn(&object.place, format!("<{tag}> is not modelled"), "it is ignored"),
         }
     }
@@ -56,9 +63,13 @@ impl Converter<'_> {
         Ok(self.beside(&object.string(name)?.ok_or_else(missing)?, &object.place))
     }
 
-    /// Returns the path of the file `name`: beside the main file, or beside the file at `place` if only that exists.
+    /// Returns the path of the file `name`: in a folder that a `<path>` names, beside the main file, or beside the file
+    /// at `place` if only that exists.
     pub fn beside(&self, name: &str, place: &Location) -> PathBuf {
         let file = name.replace('\\', "/");
+        if let Some(found) = self.document.in_folders(&file) {
+            return found;
+        }
         let beside_main = self.folder.join(&file);
         let beside_own = folder_of(&place.path).join(&file);
         if !beside_main.exists() && beside_own.exists() { beside_own } else { beside_main }
@@ -67,5 +78,16 @@ impl Converter<'_> {
     /// Returns the children of `object` with tag `tag`.
     pub fn tagged(&self, object: &Object, tag: &str) -> Result<Vec<Rc<Object>>, SceneError> {
         self.document.tagged(object, tag)
+    }
+
+    /// Returns the child of `object` with tag `tag`; the first one, with a warning, if there are several.
+    pub fn only(&mut self, object: &Object, tag: &str) -> Result<Option<Rc<Object>>, SceneError> {
+        let mut found = self.tagged(object, tag)?.into_iter();
+        let first = found.next();
+        if let Some(second) = found.next() {
+            let what = format!("{} \"{}\" has a second <{tag}>", object.tag, object.plugin);
+            self.log.warn(&second.place, what, "the first is used")?;
+        }
+        Ok(first)
     }
 }

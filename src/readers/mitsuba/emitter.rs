@@ -1,13 +1,15 @@
 //! Conversion of emitters of shapes and of the scene.
 
 use super::converter::Converter;
+use super::sensor::field_of_view;
 use super::tree::Object;
 use crate::check;
 use crate::error::SceneError;
 use crate::plan::EnvironmentPlan;
 use base::math::{Rgb, unit};
-use glam::{DMat4, DVec3, Vec3};
-use scene::{DeltaLight, Emission, Reflectance};
+use glam::{DMat3, DMat4, DVec3, Vec3};
+use scene::{DeltaLight, Emission, Projector, Reflectance, SpotImage};
+use std::f32::consts::PI;
 
 impl Converter<'_> {
     /// Converts a shape's emitter to its emission.
@@ -17,7 +19,6 @@ impl Converter<'_> {
             self.log.warn(&emitter.place, what, "the shape does not emit")?;
             return Ok(None);
         }
-        emitter.ignore(&["sampling_weight"]);
         let textured = self.document.named(emitter, "radiance")?;
         let emission = match textured {
             Some(texture) => match self.texture(&texture, 0)? {
@@ -36,7 +37,6 @@ impl Converter<'_> {
     }
 
     pub(super) fn scene_emitter(&mut self, emitter: &Object) -> Result<(), SceneError> {
-        emitter.ignore(&["sampling_weight", "mis_compensation"]);
         let to_world = emitter.transform("to_world")?;
         match emitter.plugin.as_str() {
             "point" => {
@@ -46,6 +46,7 @@ impl Converter<'_> {
                 self.contents.lights.push((DeltaLight::Point { position: Vec3::ZERO, intensity }, position));
             }
             "spot" => self.spot(emitter, to_world.unwrap_or(DMat4::IDENTITY))?,
+            "projector" => self.projector(emitter, to_world.unwrap_or(DMat4::IDENTITY))?,
             "directional" => {
                 let irradiance = self.emissive_colour(emitter, "irradiance")?.unwrap_or(Rgb::ONE);
                 let along = to_world.unwrap_or(DMat4::IDENTITY).transform_vector3(DVec3::Z);
@@ -75,15 +76,53 @@ impl Converter<'_> {
     }
 
     fn spot(&mut self, emitter: &Object, to_world: DMat4) -> Result<(), SceneError> {
-        let intensity = self.emissive_colour(emitter, "intensity")?.unwrap_or(Rgb::ONE);
+        let mut intensity = self.emissive_colour(emitter, "intensity")?.unwrap_or(Rgb::ONE);
         let outer = emitter.positive("cutoff_angle", 20.0)?;
         let inner = emitter.float("beam_width")?.unwrap_or(0.75 * outer);
         let names = ["beam_width", "cutoff_angle"];
         let [inner_angle, outer_angle] = check::cone(names, [inner, outer], &emitter.place)?;
         let direction = check::unit(to_world.transform_vector3(DVec3::Z), &emitter.place)?;
         let position = to_world.transform_point3(DVec3::ZERO);
-        let light = DeltaLight::Spot { position: Vec3::ZERO, direction, intensity, inner_angle, outer_angle };
+        let mut image = None;
+        if let Some(texture) = self.document.named(emitter, "texture")? {
+            if outer >= 90.0 {
+                let what = format!("a spot of cutoff_angle {outer} has a texture");
+                return Err(emitter.place.wrong(what, "give less than 90 degrees"));
+            }
+            match self.texture(&texture, 0)? {
+                Reflectance::Constant(colour) => intensity *= colour,
+                Reflectance::Textured { texture, scale } => {
+                    intensity *= scale;
+                    let to_local = self.rotation(emitter, to_world)?.transpose();
+                    image = Some(SpotImage { texture, to_local: DMat3::from_mat4(to_local).as_mat3() });
+                }
+            }
+        }
+        let light =
+            DeltaLight::Spot { position: Vec3::ZERO, direction, intensity, inner_angle, outer_angle, image };
         self.contents.lights.push((light, position));
+        Ok(())
+    }
+
+    /// Adds a projector. Its `irradiance` is that of a plane at distance 1, over π.
+    fn projector(&mut self, emitter: &Object, to_world: DMat4) -> Result<(), SceneError> {
+        let irradiance = match self.document.named(emitter, "irradiance")? {
+            Some(texture) => self.texture(&texture, 0)?,
+            None => Reflectance::Constant(self.emissive_colour(emitter, "irradiance")?.unwrap_or(Rgb::ONE)),
+        };
+        let (colour, texture) = match irradiance {
+            Reflectance::Constant(colour) => (colour, None),
+            Reflectance::Textured { texture, scale } => (scale, Some(texture)),
+        };
+        let intensity = colour * (PI * emitter.float("scale")?.unwrap_or(1.0) as f32);
+        let (tan_half, axis) = field_of_view(emitter)?;
+        // Mitsuba's images have x to the left and y up in the frame of a sensor.
+        let to_local = DMat3::from_diagonal(DVec3::new(-1.0, -1.0, 1.0))
+            * DMat3::from_mat4(self.rotation(emitter, to_world)?.transpose());
+        let to_local = to_local.as_mat3();
+        let projector = Projector { intensity, texture, to_local, tan_half: tan_half as f32, axis };
+        let position = to_world.transform_point3(DVec3::ZERO);
+        self.contents.lights.push((DeltaLight::Projector { position: Vec3::ZERO, projector }, position));
         Ok(())
     }
 
@@ -102,7 +141,7 @@ impl Converter<'_> {
         if [x, y, z].iter().any(|a| (a.length() - 1.0).abs() > 1e-4) {
             self.log.warn(
                 &emitter.place,
-                "the to_world of an environment scales",
+                format!("the to_world of \"{}\" scales", emitter.plugin),
                 "the scale is left out",
             )?;
         }

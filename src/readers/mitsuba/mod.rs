@@ -14,11 +14,14 @@ mod bsdf_kinds;
 mod cie;
 mod converter;
 mod emitter;
+mod grammar;
 mod integrator;
 mod sensor;
 mod shape;
 mod sky;
+mod statements;
 mod texture;
+mod thin;
 mod tree;
 mod value;
 
@@ -27,6 +30,7 @@ use crate::file::{folder_of, stem_of};
 use crate::options::LoadOptions;
 use crate::plan::{Contents, ScenePlan};
 use converter::Converter;
+use integrator::IntegratorSettings;
 use std::path::Path;
 use tree::SceneXml;
 
@@ -46,15 +50,20 @@ pub(super) fn read(path: &Path, options: &LoadOptions, log: &mut Log) -> Result<
         instances: (0, None),
     };
     converter.scene();
+    let rest = converter.report_unused();
+    converter.log.part(rest);
+    let integrator = converter.integrator();
+    let integrator = converter.log.part(integrator).unwrap_or_default();
     let shot = converter.shot(options.camera.as_deref());
     converter.report_instances();
     let (contents, read) = (converter.contents, converter.sources);
-    let (shot, max_depth, hides_emitters) = log.conclude(shot)?;
+    let shot = log.conclude(shot)?;
     let stem = stem_of(path);
     let folder_name = path.parent().and_then(Path::file_name).map(|s| s.to_string_lossy().into_owned());
     // Scene files are often called scene.xml. The folder then gives the name.
     let name = if stem == "scene" { folder_name.unwrap_or(stem) } else { stem };
     let sources = document.sources.iter().cloned().chain(read).collect();
+    let IntegratorSettings { max_depth, hides_emitters } = integrator;
     Ok(ScenePlan { name, sources, shot, max_depth, hides_emitters, contents })
 }
 

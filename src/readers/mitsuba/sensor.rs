@@ -1,12 +1,14 @@
 //! Conversion of sensors and their film.
 
 use super::converter::Converter;
+use super::statements::fate_of_plugin;
 use super::tree::Object;
 use crate::draft::{DraftCamera, Shot};
 use crate::error::{Location, SceneError};
+use crate::statements::Fate;
 use base::math::{right_of, unit};
 use glam::{DMat4, DVec3};
-use scene::{MAX_SIDE, PixelFilter, Projection};
+use scene::{FovAxis, MAX_SIDE, PixelFilter, Projection};
 use std::rc::Rc;
 
 /// Film of a sensor.
@@ -19,15 +21,9 @@ struct SensorFilm {
 }
 
 impl Converter<'_> {
-    /// Returns the shot of the sensor `wanted` (a number from 1, or an id; else the first), the maximum path length,
-    /// and whether visible emitters are hidden.
-    pub(super) fn shot(&mut self, wanted: Option<&str>) -> Result<(Shot, Option<u32>, bool), SceneError> {
+    /// Returns the shot of the sensor `wanted` (a number from 1, or an id; else the first).
+    pub(super) fn shot(&mut self, wanted: Option<&str>) -> Result<Shot, SceneError> {
         let root = &self.document.root;
-        let integrators = self.tagged(root, "integrator")?;
-        let (max_depth, hides_emitters) = match integrators.first() {
-            Some(integrator) => (self.max_depth(integrator)?, integrator.boolean("hide_emitters", false)?),
-            None => (None, false),
-        };
         let sensors = self.tagged(root, "sensor")?;
         let sensor = chosen(&sensors, wanted, &root.place)?;
         if let (None, [_, second, ..]) = (wanted, &sensors[..]) {
@@ -55,23 +51,32 @@ impl Converter<'_> {
                 self.log.warn(&sensor.place, "a shifted principal point is not modelled", "it is centred")?;
             }
         }
-        let focus_distance = sensor.positive("focus_distance", far)?;
         let (projection, tan_half_x) = match sensor.plugin.as_str() {
             // The film covers -1 to 1, scaled by to_world.
             "orthographic" => (Projection::Parallel, to_world.transform_vector3(DVec3::X).length()),
             "thinlens" => {
+                let focus_distance = sensor.positive("focus_distance", far)?;
                 let radius = sensor.positive("aperture_radius", 0.0)?;
                 let lens = Projection::Lens { radius: radius as f32, distance: focus_distance as f32 };
                 (lens, (0.5 * horizontal_fov(sensor, aspect)?).tan())
             }
             _ => (Projection::Pinhole, (0.5 * horizontal_fov(sensor, aspect)?).tan()),
         };
-        sensor.ignore(&["shutter_open", "shutter_close"]);
-        self.tagged(sensor, "sampler")?;
+        self.sampler(sensor)?;
         let camera = self.camera(&sensor.place, &to_world, projection)?;
         let camera = DraftCamera { tan_half_x, near, far, filter, ..camera };
         sensor.report_unused(self.log)?;
-        Ok((Shot { camera, fits: false, path: Vec::new(), resolution, crop }, max_depth, hides_emitters))
+        Ok(Shot { camera, fits: false, path: Vec::new(), resolution, crop })
+    }
+
+    /// Names what a sampler says besides noise. `--spp` gives the number of samples.
+    fn sampler(&mut self, sensor: &Object) -> Result<(), SceneError> {
+        let Some(sampler) = self.only(sensor, "sampler")? else { return Ok(()) };
+        if fate_of_plugin("sampler", &sampler.plugin) != Fate::NoEffect {
+            let what = format!("the sampler \"{}\" is not known", sampler.plugin);
+            return self.log.warn(&sampler.place, what, "it is left out");
+        }
+        sampler.report_unused(self.log)
     }
 
     /// Returns a camera with its position and axes. Mitsuba's cameras look along +z with +x to the left.
@@ -110,10 +115,19 @@ impl Converter<'_> {
     }
 
     fn film(&mut self, sensor: &Object) -> Result<SensorFilm, SceneError> {
-        let films = self.tagged(sensor, "film")?;
-        let Some(film) = films.first() else {
+        let Some(film) = self.only(sensor, "film")? else {
             return Ok(SensorFilm { resolution: [768, 576], crop: None, filter: PixelFilter::GAUSSIAN });
         };
+        if fate_of_plugin("film", &film.plugin) != Fate::Read {
+            let what = format!("the film \"{}\" is not modelled", film.plugin);
+            self.log.warn(&film.place, what, "it is an hdrfilm")?;
+        }
+        if let Some(format) = film.string("pixel_format")?
+            && !matches!(format.to_lowercase().as_str(), "rgb" | "rgba")
+        {
+            let what = format!("the pixel format \"{format}\" is not modelled");
+            self.log.warn(&film.place, what, "red, green and blue are written")?;
+        }
         let size = |name: &str, default: i64| {
             let value = film.integer(name)?.unwrap_or(default);
             let fits = u32::try_from(value).ok().filter(|v| (1..=MAX_SIDE).contains(v));
@@ -139,8 +153,11 @@ impl Converter<'_> {
             return Err(film.place.wrong(what, "keep crop_offset + crop size within the film's size"));
         }
         let crop = (crop != whole).then_some([[x, y], [width, height]]);
-        let filters = self.tagged(film, "rfilter")?;
-        let filter = filters.first().map_or(Ok(PixelFilter::GAUSSIAN), |filter| self.filter(filter))?;
+        let filter = match self.only(&film, "rfilter")? {
+            Some(filter) => self.filter(&filter)?,
+            None => PixelFilter::GAUSSIAN,
+        };
+        film.report_unused(self.log)?;
         Ok(SensorFilm { resolution, crop, filter })
     }
 
@@ -170,7 +187,7 @@ impl Converter<'_> {
             }
             other => {
                 let what = format!("the film's reconstruction filter \"{other}\" is not modelled");
-                self.log.note(&object.place, what, "a Gaussian of deviation .5 stands in");
+                self.log.warn(&object.place, what, "a Gaussian of deviation .5 stands in")?;
                 object.properties.iter().for_each(|property| property.used.set(true));
                 PixelFilter::GAUSSIAN
             }
@@ -217,6 +234,20 @@ fn names(sensors: &[Rc<Object>]) -> String {
 
 /// Returns the horizontal field of view in radians.
 fn horizontal_fov(sensor: &Object, aspect: f64) -> Result<f64, SceneError> {
+    let (tan, axis) = field_of_view(sensor)?;
+    let tan_x = axis.tan_half_x(tan, aspect);
+    if !(tan_x > 0.0 && (tan_x as f32).is_finite()) {
+        return Err(fov_out_of_range(sensor));
+    }
+    Ok(2.0 * tan_x.atan())
+}
+
+fn fov_out_of_range(object: &Object) -> SceneError {
+    object.place.wrong("the field of view is not between 0 and 180 degrees", "correct fov")
+}
+
+/// Returns the tangent of half the field of view of a sensor or projector, and the axis to which it refers.
+pub(super) fn field_of_view(sensor: &Object) -> Result<(f64, FovAxis), SceneError> {
     let wrong = |what: String, remedy: &str| sensor.place.wrong(what, remedy);
     let (fov, axis) = match (sensor.float("fov")?, sensor.property("focal_length")) {
         (Some(_), Some(_)) => {
@@ -235,37 +266,18 @@ fn horizontal_fov(sensor: &Object, aspect: f64) -> Result<f64, SceneError> {
             (2.0 * (36f64.hypot(24.0) / (2.0 * millimetres)).atan(), "diagonal".into())
         }
     };
-    let tan = (0.5 * fov).tan();
     let axis = match axis.as_str() {
-        "smaller" => {
-            if aspect > 1.0 {
-                "y"
-            } else {
-                "x"
-            }
-        }
-        "larger" => {
-            if aspect > 1.0 {
-                "x"
-            } else {
-                "y"
-            }
-        }
-        other => other,
-    };
-    let tan_x = match axis {
-        "x" => tan,
-        "y" => tan * aspect,
-        "diagonal" => tan / (1.0 + 1.0 / (aspect * aspect)).sqrt(),
+        "x" => FovAxis::X,
+        "y" => FovAxis::Y,
+        "diagonal" => FovAxis::Diagonal,
+        "smaller" => FovAxis::Smaller,
+        "larger" => FovAxis::Larger,
         other => {
-            return Err(wrong(
-                format!("unknown fov_axis \"{other}\""),
-                "use x, y, smaller, larger or diagonal",
-            ));
+            let remedy = "use x, y, smaller, larger or diagonal";
+            return Err(wrong(format!("unknown fov_axis \"{other}\""), remedy));
         }
     };
-    if !(tan_x > 0.0 && (tan_x as f32).is_finite() && fov > 0.0 && fov < std::f64::consts::PI) {
-        return Err(wrong("the field of view is not between 0 and 180 degrees".into(), "correct fov"));
-    }
-    Ok(2.0 * tan_x.atan())
+    let tan = (0.5 * fov).tan();
+    let is_in_range = fov > 0.0 && fov < std::f64::consts::PI && (tan as f32).is_finite();
+    if is_in_range { Ok((tan, axis)) } else { Err(fov_out_of_range(sensor)) }
 }

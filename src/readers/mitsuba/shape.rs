@@ -110,12 +110,12 @@ impl Converter<'_> {
 
     fn mesh(&mut self, shape: &Object, outer: DMat4) -> Result<(), SceneError> {
         let Some((geometry, v_down)) = self.geometry(shape)? else { return Ok(()) };
-        let emission = match self.tagged(shape, "emitter")?.first() {
-            Some(emitter) => self.area_emitter(emitter)?,
+        let emission = match self.only(shape, "emitter")? {
+            Some(emitter) => self.area_emitter(&emitter)?,
             None => None,
         };
-        let bsdfs = self.tagged(shape, "bsdf")?;
-        let material = self.material_of_shape(bsdfs.first(), emission.is_some())?;
+        let bsdf = self.only(shape, "bsdf")?;
+        let material = self.material_of_shape(bsdf.as_ref(), emission.is_some())?;
         let of_emission = emission.and_then(|emission| emission.texture);
         let textured =
             self.reads_images(material) || of_emission.is_some_and(|texture| self.contents.is_image(texture));
@@ -129,7 +129,6 @@ impl Converter<'_> {
             v_down,
             needs_uv: textured,
         };
-        shape.ignore(&["collapse", "silhouette_sampling_weight", "max_smooth_angle"]);
         shape.report_unused(self.log)?;
         let name = shape.id.clone().unwrap_or_else(|| match &geometry {
             MeshSource::Obj(path, _) | MeshSource::Ply(path) | MeshSource::Stl(path) => stem_of(path),

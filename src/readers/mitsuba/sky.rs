@@ -47,7 +47,6 @@ impl Converter<'_> {
             let what = "a sun of dark limb is not modelled";
             self.log.warn(&emitter.place, what, "its disc is even and of the same irradiance")?;
         }
-        emitter.ignore(&["resolution"]);
         sky.check(&emitter.place, self.log)?;
         self.contents.discs.extend(sky.sun());
         if sky.sky_scale > 0.0 {

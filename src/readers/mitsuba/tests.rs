@@ -1,5 +1,8 @@
 mod errors;
 mod films;
+mod integrators;
+mod projections;
+mod statements;
 
 use crate::{LoadOptions, Loaded, Severity, load};
 use base::math::Rgb;

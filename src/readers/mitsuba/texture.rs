@@ -122,7 +122,20 @@ impl Converter<'_> {
                     Some(colour) => Some(colour),
                     None => self.colour(object, "value")?,
                 };
-                Reflectance::Constant(value.unwrap_or(Rgb::ONE))
+                let scale = if object.plugin == "d65" { object.float("scale")?.unwrap_or(1.0) } else { 1.0 };
+                let colour = value.unwrap_or(Rgb::ONE) * scale as f32;
+                match self.only(object, "texture")?.filter(|_| object.plugin == "d65") {
+                    Some(nested) => self.texture(&nested, depth + 1)?.times(colour),
+                    None => Reflectance::Constant(colour),
+                }
+            }
+            "rawconstant" => {
+                let value = match object.property("value").map(|property| &property.value) {
+                    Some(PropertyValue::Vector(value)) => Some(value::rgb(*value)),
+                    _ => self.colour(object, "value")?,
+                };
+                let none = || object.place.wrong("the texture has no value", "give a <float> or a <vector>");
+                Reflectance::Constant(value.ok_or_else(none)?)
             }
             "blackbody" => {
                 let samples = cie::blackbody(object.positive("temperature", 5000.0)?);
@@ -157,11 +170,10 @@ impl Converter<'_> {
             Ok(Some(v)) => Rgb::splat(v as f32),
             _ => self.colour(object, "scale")?.unwrap_or(Rgb::ONE),
         };
-        let nested = self.tagged(object, "texture")?;
-        let Some(nested) = nested.first() else {
+        let Some(nested) = self.only(object, "texture")? else {
             return Err(object.place.wrong("nothing to scale", "nest a <texture>"));
         };
-        Ok(match self.texture(nested, depth + 1)? {
+        Ok(match self.texture(&nested, depth + 1)? {
             Reflectance::Constant(colour) => Reflectance::Constant(colour * factor),
             Reflectance::Textured { texture, scale } => {
                 Reflectance::Textured { texture, scale: scale * factor }
@@ -202,7 +214,6 @@ impl Converter<'_> {
                 )?;
             }
         }
-        object.ignore(&["accel", "format", "max_anisotropy", "cache"]);
         if let Some(channel) = object.string("channel")? {
             self.log.warn(
                 &object.place,

@@ -3,6 +3,7 @@
 //! The parser resolves `<default>`, `<include>`, `<alias>` and `$parameters`. It converts the camelCase names of
 //! Mitsuba 0.6 to those of 3.x.
 
+use super::grammar::{has_attribute, is_object, snake_case};
 use super::value::{self, PropertyValue};
 use crate::error::{Location, Log, SceneError};
 use crate::file::{folder_of, read_text};
@@ -75,6 +76,8 @@ pub(super) struct SceneXml {
     pub sources: Vec<(PathBuf, u64)>,
     /// True if the main file is of Mitsuba 0.x.
     pub is_old: bool,
+    /// Folders that `<path>` elements name, in their order.
+    folders: Vec<PathBuf>,
 }
 
 impl SceneXml {
@@ -88,7 +91,13 @@ impl SceneXml {
             let remedy = "correct the name given with -D, or leave it out";
             builder.log.part::<()>(Err(Location::file(path).wrong(what, remedy)));
         }
-        Ok(SceneXml { root, ids: builder.ids, sources: builder.sources, is_old: builder.is_old })
+        let XmlReader { ids, sources, is_old, folders, .. } = builder;
+        Ok(SceneXml { root, ids, sources, is_old, folders })
+    }
+
+    /// Returns the path of a file in one of the folders that `<path>` elements name; the last one counts first.
+    pub fn in_folders(&self, file: &str) -> Option<PathBuf> {
+        in_folders(&self.folders, file)
     }
 
     /// Returns the object that a child refers to.
@@ -138,6 +147,7 @@ struct XmlReader<'a> {
     substituted: Cell<usize>,
     sources: Vec<(PathBuf, u64)>,
     is_old: bool,
+    folders: Vec<PathBuf>,
 }
 
 impl XmlReader<'_> {
@@ -147,7 +157,8 @@ impl XmlReader<'_> {
         };
         let parameters = given.iter().map(parameter).collect();
         let substituted = Cell::new(0);
-        XmlReader { log, ids: BTreeMap::new(), parameters, substituted, sources: Vec::new(), is_old: false }
+        let (ids, sources, folders) = (BTreeMap::new(), Vec::new(), Vec::new());
+        XmlReader { log, ids, parameters, substituted, sources, is_old: false, folders }
     }
 
     /// Reads a file into `parent`: the content of a scene, or a single object under `name`.
@@ -175,6 +186,7 @@ impl XmlReader<'_> {
                 return Err(place.wrong("the scene has no version", remedy));
             };
             self.is_old |= self.sources.len() == 1 && version.starts_with("0.");
+            self.report_unknown(&root, &place)?;
             self.contents(path, &root, parent, depth);
         } else {
             self.element(path, &root, parent, name, depth + 1)?;
@@ -207,6 +219,7 @@ impl XmlReader<'_> {
             return Err(place.wrong("elements or includes nested too deeply", "flatten the file"));
         }
         let attributes = self.attributes(node, &place)?;
+        self.report_unknown(node, &place)?;
         let get = |name: &str| attributes.get(name).map(String::as_str);
         let need = |name: &str| {
             let what = format!("<{}> lacks the attribute \"{name}\"", node.tag_name().name());
@@ -221,8 +234,10 @@ impl XmlReader<'_> {
         match node.tag_name().name() {
             "default" => self.add_default(need("name")?, need("value")?),
             "include" => {
-                let name = get("name").map(str::to_owned);
-                self.file(&folder_of(path).join(need("filename")?), &place, parent, name, depth + 1)?;
+                let (name, file) = (get("name").map(str::to_owned), need("filename")?);
+                let beside = || folder_of(path).join(file);
+                let file = in_folders(&self.folders, file).unwrap_or_else(beside);
+                self.file(&file, &place, parent, name, depth + 1)?;
             }
             "alias" => {
                 let id = need("id")?;
@@ -231,8 +246,14 @@ impl XmlReader<'_> {
             }
             "ref" => parent.children.push(child(ChildTarget::Reference(need("id")?.to_owned()))),
             "path" => {
-                // The path is a folder to search. It has no effect, since file names are relative to their own file.
-                need("value")?;
+                let folder = folder_of(path).join(need("value")?);
+                match folder.is_dir() {
+                    true => self.folders.push(folder),
+                    false => {
+                        let what = format!("the folder {} does not exist", folder.display());
+                        self.log.warn(&place, what, "files are searched beside the scene")?;
+                    }
+                }
             }
             tag if is_object(tag) || (tag == "spectrum" && get("type").is_some()) => {
                 let kind = if tag == "spectrum" { "texture" } else { tag };
@@ -270,10 +291,28 @@ impl XmlReader<'_> {
         Ok(object)
     }
 
-    fn transform(&self, path: &Path, node: &roxmltree::Node) -> Result<PropertyValue, SceneError> {
+    /// Warns of attributes that an element does not have, and of text within it.
+    fn report_unknown(&mut self, node: &roxmltree::Node, place: &Location) -> Result<(), SceneError> {
+        let tag = node.tag_name().name();
+        for attribute in node.attributes().filter(|attribute| !has_attribute(tag, attribute.name())) {
+            let what = format!("the attribute \"{}\" of <{tag}> is not known", attribute.name());
+            self.log.warn(place, what, "it is ignored")?;
+        }
+        let text = node.children().filter(|child| child.is_text()).filter_map(|child| child.text());
+        match text.map(str::trim).find(|text| !text.is_empty()) {
+            Some(text) => {
+                let what = format!("<{tag}> has the text \"{}\"", text.chars().take(40).collect::<String>());
+                self.log.warn(place, what, "it is ignored")
+            }
+            None => Ok(()),
+        }
+    }
+
+    fn transform(&mut self, path: &Path, node: &roxmltree::Node) -> Result<PropertyValue, SceneError> {
         let mut operations = Vec::new();
         for child in node.children().filter(|n| n.is_element()) {
             let place = self.place(path, &child);
+            self.report_unknown(&child, &place)?;
             let attributes = self.attributes(&child, &place)?;
             operations.push((child.tag_name().name().to_owned(), attributes, place));
         }
@@ -324,39 +363,9 @@ impl XmlReader<'_> {
     }
 }
 
-fn is_object(tag: &str) -> bool {
-    const TAGS: [&str; 14] = [
-        "scene",
-        "bsdf",
-        "emitter",
-        "film",
-        "integrator",
-        "medium",
-        "phase",
-        "rfilter",
-        "sensor",
-        "sampler",
-        "shape",
-        "texture",
-        "volume",
-        "subsurface",
-    ];
-    TAGS.contains(&tag)
-}
-
-/// Converts `intIOR` to `int_ior` and `toWorld` to `to_world`. Names of 3.x stay unchanged.
-pub(super) fn snake_case(name: &str) -> String {
-    let mut out = String::with_capacity(name.len() + 2);
-    let mut previous_lower = false;
-    for c in name.chars() {
-        if previous_lower && c.is_ascii_uppercase() {
-            out.push('_');
-        }
-        previous_lower = c.is_ascii_lowercase();
-        // Parameter names have no capital at the start.
-        out.push(c.to_ascii_lowercase());
-    }
-    out
+/// Returns the path of `file` in the last of the folders that has it.
+fn in_folders(folders: &[PathBuf], file: &str) -> Option<PathBuf> {
+    folders.iter().rev().map(|folder| folder.join(file)).find(|path| path.exists())
 }
 
 #[cfg(test)]

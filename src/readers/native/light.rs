@@ -35,8 +35,14 @@ impl SceneBuilder<'_> {
                 let inner = text.inner_angle.map_or(0.75 * outer, f64::from);
                 let names = ["inner_angle", "outer_angle"];
                 let [inner_angle, outer_angle] = check::cone(names, [inner, outer], &place)?;
-                let light =
-                    DeltaLight::Spot { position: Vec3::ZERO, direction, intensity, inner_angle, outer_angle };
+                let light = DeltaLight::Spot {
+                    position: Vec3::ZERO,
+                    direction,
+                    intensity,
+                    inner_angle,
+                    outer_angle,
+                    image: None,
+                };
                 (light, position)
             }
             _ => {

@@ -107,7 +107,7 @@ impl PilotPaths {
     pub fn new(world: &World, seed: u32, max_depth: u32, control: &Control) -> PilotPaths {
         // Paths of photons have two edges at least, and the eye's path has another.
         let max_edges = max_depth.saturating_sub(1);
-        let may_be = world.specular.has_delta_lobes() && max_edges >= 2;
+        let may_be = world.specular.has_delta_lobes() && world.specular.spread_light() && max_edges >= 2;
         let emitter = if may_be { PhotonEmitter::new(world) } else { None };
         let found =
             emitter.map(|emitter| CausticTracer::new(world, &emitter, seed, max_edges, control).pilot());

@@ -5,13 +5,16 @@
 use super::lit_sphere::LitSphere;
 use super::target::EmissionTarget;
 use super::{EmissionNumbers, EmissionSample};
-use base::math::{Frame, luminance};
+use base::math::{Frame, Rgb, luminance};
 use base::sampling::uniform_sphere;
-use glam::Vec3;
+use embree::Ray;
+use glam::{Vec2, Vec3};
 use scene::DeltaLight;
 use std::f32::consts::{PI, TAU};
 use world::World;
-use world::light::{AreaLight, DiscreteDistribution, EnvironmentLight, spot_falloff};
+use world::light::{
+    AreaLight, DeltaEmitter, DiscreteDistribution, EnvironmentLight, ImageLight, spot_falloff,
+};
 use world::shadow;
 
 /// The emitters of a scene: area lights, then point, spot and directional lights, then the environment.
@@ -52,7 +55,8 @@ impl<'w> PhotonEmitter<'w> {
     pub fn is_far(&self, index: usize) -> bool {
         let emitters = &self.world.emitters;
         let delta = index.checked_sub(emitters.areas.len()).map(|delta| emitters.deltas.get(delta));
-        matches!(delta, Some(None | Some(DeltaLight::Directional { .. })))
+        let is_far = |delta: &DeltaEmitter| matches!(delta.light, DeltaLight::Directional { .. });
+        delta.is_some_and(|delta| delta.is_none_or(is_far))
     }
 
     /// Begins a path at emitter `index`, with the flux of paths that choose emitters in proportion to power. Returns
@@ -73,7 +77,7 @@ impl<'w> PhotonEmitter<'w> {
             return self.begin_at_area(light, inv_probability, numbers);
         }
         match emitters.deltas.get(index - emitters.areas.len()) {
-            Some(light) => self.begin_at_delta(light, inv_probability, numbers),
+            Some(delta) => self.begin_at_delta(delta, inv_probability, numbers),
             None => self.begin_at_environment(emitters.environment.as_ref()?, inv_probability, numbers),
         }
     }
@@ -94,12 +98,16 @@ impl<'w> PhotonEmitter<'w> {
 
     fn begin_at_delta(
         &self,
-        light: &DeltaLight,
+        delta: &DeltaEmitter,
         inv_probability: f32,
         numbers: &EmissionNumbers,
     ) -> Option<EmissionSample> {
         let u = numbers.direction;
-        let (ray, flux) = match *light {
+        let (ray, flux) = match delta.light {
+            DeltaLight::Spot { position, image: Some(_), .. } | DeltaLight::Projector { position, .. } => {
+                let (ray, flux) = self.begin_at_image(position, delta.image.as_deref()?, u);
+                (ray, flux * inv_probability)
+            }
             DeltaLight::Point { position, intensity } => match self.target.towards(position) {
                 Some(towards) => {
                     let solid_angle = towards.solid_angle();
@@ -110,7 +118,7 @@ impl<'w> PhotonEmitter<'w> {
                     (ray, intensity * (4.0 * PI * inv_probability))
                 }
             },
-            DeltaLight::Spot { position, direction, intensity, inner_angle, outer_angle } => {
+            DeltaLight::Spot { position, direction, intensity, inner_angle, outer_angle, image: None } => {
                 let one_minus_cos = 1.0 - outer_angle.cos();
                 let towards = self.target.towards(position);
                 if let Some(towards) = towards.filter(|towards| towards.one_minus_cos < one_minus_cos) {
@@ -134,6 +142,16 @@ impl<'w> PhotonEmitter<'w> {
             }
         };
         EmissionSample::new(ray, flux, None)
+    }
+
+    /// Begins a path at a light that projects an image. Returns its ray, and the flux of a path that chose this light.
+    fn begin_at_image(&self, position: Vec3, image: &ImageLight, u: Vec2) -> (Ray, Rgb) {
+        if let Some(towards) = self.target.towards_by_image(position, image) {
+            let ray = self.target.ray_in(&towards, u);
+            return (ray, image.intensity(ray.direction) * towards.solid_angle());
+        }
+        let (direction, solid_angle) = image.sample(u);
+        (shadow::ray_from(position, Vec3::ZERO, direction), image.intensity(direction) * solid_angle)
     }
 
     fn begin_at_environment(

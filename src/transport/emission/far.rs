@@ -36,7 +36,7 @@ impl<'w> FarLights<'w> {
             .emitters
             .deltas
             .iter()
-            .filter_map(|light| match light {
+            .filter_map(|delta| match &delta.light {
                 DeltaLight::Directional { direction, irradiance } => Some((*direction, *irradiance)),
                 _ => None,
             })

@@ -18,7 +18,8 @@ const FIRST_WAVE: u32 = 16;
 /// Maximum number of paths per photon asked for; reached if most light misses the scene.
 const PATHS_PER_PHOTON: u32 = 32;
 
-/// Traces photons, maps each of them by `keep`, and returns the results in order.
+/// Traces photons, maps each of them by `keep`, and returns the results in order. Nothing is traced if no surface
+/// stores photons.
 pub fn trace_photons<T: Send>(
     world: &World,
     settings: &PhotonSettings,
@@ -27,7 +28,7 @@ pub fn trace_photons<T: Send>(
 ) -> (Vec<T>, PhotonCounts) {
     let max_edges = settings.max_edges.min(MAX_EDGES);
     let emitter = match PhotonEmitter::new(world) {
-        Some(emitter) if settings.photons > 0 && max_edges > 0 => emitter,
+        Some(emitter) if settings.photons > 0 && max_edges > 0 && world.specular.store_light() => emitter,
         _ => return (Vec::new(), PhotonCounts::default()),
     };
     let planned = plan(&emitter, settings, max_edges);

@@ -10,7 +10,7 @@ use glam::{Vec2, Vec3};
 use scene::DeltaLight;
 use std::f32::consts::{PI, TAU};
 use world::World;
-use world::light::delta_power;
+use world::light::{DeltaEmitter, ImageLight};
 
 /// Radius of the core of the target, relative to the size of the camera's surroundings.
 const CORE: f32 = 8.0;
@@ -125,15 +125,28 @@ impl EmissionTarget {
         Ray { origin, t_near: 0.0, direction, t_far: f32::INFINITY }
     }
 
-    /// Flux that photons of a point, spot or directional light carry, as luminance.
-    pub fn power(&self, light: &DeltaLight) -> f32 {
-        let all = delta_power(light, self.core);
-        match *light {
-            DeltaLight::Point { position, intensity } | DeltaLight::Spot { position, intensity, .. } => {
-                let towards = |towards: TowardsTarget| TAU * towards.one_minus_cos * luminance(intensity);
-                all.min(self.towards(position).map_or(f32::INFINITY, towards))
+    /// Flux that photons of a point, spot or directional light or a projector carry, as luminance.
+    pub fn power(&self, delta: &DeltaEmitter) -> f32 {
+        let all = delta.power(self.core);
+        let towards = |position, intensity| {
+            let towards = |towards: TowardsTarget| TAU * towards.one_minus_cos * luminance(intensity);
+            all.min(self.towards(position).map_or(f32::INFINITY, towards))
+        };
+        match (delta.light, &delta.image) {
+            (DeltaLight::Spot { position, .. } | DeltaLight::Projector { position, .. }, Some(image)) => {
+                towards(position, image.peak)
             }
-            DeltaLight::Directional { .. } => all,
+            (DeltaLight::Point { position, intensity } | DeltaLight::Spot { position, intensity, .. }, _) => {
+                towards(position, intensity)
+            }
+            (DeltaLight::Projector { .. } | DeltaLight::Directional { .. }, _) => all,
         }
+    }
+
+    /// Returns the cone from an emitter at `position` to the target, if photons carry less flux in the cone than in the
+    /// whole image that the emitter projects.
+    pub fn towards_by_image(&self, position: Vec3, image: &ImageLight) -> Option<TowardsTarget> {
+        let less = |towards: &TowardsTarget| towards.solid_angle() * luminance(image.peak) < image.power;
+        self.towards(position).filter(less)
     }
 }

@@ -11,7 +11,7 @@ use super::counts::EyeCounts;
 use base::math::{LANES, Rgb, Vec2x16, Vec3x16, lanes_in, luminance};
 use base::sampling::{Sampler, power_heuristic};
 use glam::{Vec2, Vec3};
-use world::light::{Receivers16, delta_irradiance};
+use world::light::Receivers16;
 use world::material::Bsdf;
 use world::shadow;
 use world::{Surface, World};
@@ -103,7 +103,7 @@ impl Sharp<'_> {
     fn point_lights(&self, counts: &mut EyeCounts) -> Rgb {
         let mut radiance = Rgb::ZERO;
         for light in &self.world.emitters.deltas {
-            let (direction, distance, irradiance) = delta_irradiance(light, self.surface.position);
+            let (direction, distance, irradiance) = light.irradiance(self.surface.position);
             let wi = self.surface.frame.to_local(direction);
             let value = self.lobe.eval(self.wo, wi) * irradiance * wi.z.abs();
             if value == Rgb::ZERO || !value.is_finite() {

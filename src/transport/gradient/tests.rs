@@ -227,8 +227,11 @@ fn lights_that_cannot_be_seen_give_nothing() {
 fn virtual_lights_arrive_as_the_lightcut_counts_them() {
     let frame = Frame::from_normal(Vec3::new(0.3, -0.5, 0.8).normalize());
     let position = Vec3::new(1.0, 2.0, 3.0);
-    let spot =
-        SpotProfile { direction: Vec3::new(-0.2, 0.1, -1.0).normalize(), inner_angle: 0.3, outer_angle: 0.8 };
+    let spot = SpotProfile::Cone {
+        direction: Vec3::new(-0.2, 0.1, -1.0).normalize(),
+        inner_angle: 0.3,
+        outer_angle: 0.8,
+    };
     let light = position + Vec3::new(0.4, 0.3, 1.5);
     let lobe = LobeProfile {
         normal: Vec3::new(0.3, 0.2, -1.0).normalize(),

@@ -105,7 +105,7 @@ pub fn profiles() -> Profiles {
             peak: lobe.peak,
         }));
     }
-    let spot = SpotProfile { direction: Vec3::Y, inner_angle: 0.4, outer_angle: 1.0 };
+    let spot = SpotProfile::Cone { direction: Vec3::Y, inner_angle: 0.4, outer_angle: 1.0 };
     Profiles { spots: vec![spot], lobes }
 }
 

@@ -1,7 +1,8 @@
-//! VPLs of emitted light: stratified points on area lights; one VPL for each point, spot and directional light;
-//! luminance-stratified directions for the environment, in a set of their own.
+//! VPLs of emitted light: stratified points on area lights; one VPL for each point, spot and directional light,
+//! up to three for a projected image; luminance-stratified directions for the environment, in a set of their own.
 
 use super::{LightPassSettings, Origin, SpotProfile, Vpl, VplKind, VplSet, size_of_area};
+use base::math::Rgb;
 use base::progress::Control;
 use base::sampling::{hash, owen_sobol_2d};
 use scene::DeltaLight;
@@ -42,14 +43,26 @@ pub fn direct_vpls(world: &World, settings: &LightPassSettings, control: &Contro
     let mut omni = VplSet::new(VplKind::Omni, Origin::Direct);
     let mut directional = VplSet::new(VplKind::Directional, Origin::Direct);
     let mut spots = Vec::new();
-    for light in &emitters.deltas {
-        match *light {
-            DeltaLight::Point { position, intensity } => omni.push(Vpl::omni(position), intensity),
-            DeltaLight::Spot { position, direction, intensity, inner_angle, outer_angle } => {
-                omni.push(Vpl::spot(position, spots.len() as u32), intensity);
-                spots.push(SpotProfile { direction, inner_angle, outer_angle });
+    for delta in &emitters.deltas {
+        match (delta.light, &delta.image) {
+            (DeltaLight::Spot { position, .. } | DeltaLight::Projector { position, .. }, Some(image)) => {
+                // Shares of virtual lights have no hue, so an image in colour has a virtual light for each channel.
+                let mut add = |colour: Rgb, channel| {
+                    omni.push(Vpl::spot(position, spots.len() as u32), image.peak * colour);
+                    spots.push(SpotProfile::Image { image: image.clone(), channel });
+                };
+                match image.is_grey {
+                    true => add(Rgb::ONE, image.peak.max_position()),
+                    false => Rgb::AXES.into_iter().enumerate().for_each(|(channel, axis)| add(axis, channel)),
+                }
             }
-            DeltaLight::Directional { direction, irradiance } => {
+            (DeltaLight::Point { position, intensity }, _) => omni.push(Vpl::omni(position), intensity),
+            (DeltaLight::Spot { position, direction, intensity, inner_angle, outer_angle, .. }, None) => {
+                omni.push(Vpl::spot(position, spots.len() as u32), intensity);
+                spots.push(SpotProfile::Cone { direction, inner_angle, outer_angle });
+            }
+            (DeltaLight::Projector { .. }, None) => {}
+            (DeltaLight::Directional { direction, irradiance }, _) => {
                 directional.push(Vpl::directional(-direction), irradiance);
             }
         }

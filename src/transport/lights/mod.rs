@@ -5,6 +5,8 @@
 //! - [`Lights`] holds all of it for a scene.
 
 mod direct;
+#[cfg(test)]
+mod image_tests;
 mod indirect;
 mod intensities;
 mod octahedral;

@@ -3,29 +3,61 @@
 use base::math::{F32x16, Vec3x16};
 use glam::Vec3;
 use std::f32::consts::PI;
-use world::light::spot_falloff;
+use std::sync::Arc;
+use world::light::{ImageLight, spot_falloff};
 use world::material::LobeShape;
 
-/// Angular profile of a spot light: 1 within `inner_angle`, falling linearly in angle to 0 at `outer_angle`.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SpotProfile {
-    /// Unit axis, away from the light.
-    pub direction: Vec3,
-    /// Half angle of full intensity, radians.
-    pub inner_angle: f32,
-    /// Half angle of the cone, radians.
-    pub outer_angle: f32,
+/// Angular profile of a spot light or a projector.
+#[derive(Clone, Debug)]
+pub enum SpotProfile {
+    /// 1 within `inner_angle`, falling linearly in angle to 0 at `outer_angle`.
+    Cone {
+        /// Unit axis, away from the light.
+        direction: Vec3,
+        /// Half angle of full intensity, radians.
+        inner_angle: f32,
+        /// Half angle of the cone, radians.
+        outer_angle: f32,
+    },
+    /// One channel of a projected image.
+    Image {
+        /// The image.
+        image: Arc<ImageLight>,
+        /// Index of the channel.
+        channel: usize,
+    },
 }
 
 impl SpotProfile {
-    /// Fraction of the axial intensity sent in the unit direction `away`, in [0, 1].
+    /// Fraction of the maximum intensity sent in the unit direction `away`, in [0, 1].
     pub fn falloff(&self, away: Vec3) -> f32 {
-        spot_falloff(self.direction.dot(away), self.inner_angle, self.outer_angle)
+        match self {
+            SpotProfile::Cone { direction, inner_angle, outer_angle } => {
+                spot_falloff(direction.dot(away), *inner_angle, *outer_angle)
+            }
+            SpotProfile::Image { image, channel } => {
+                let share = image.intensity(away)[*channel] / image.peak[*channel];
+                if share < 1.0 { share } else { 1.0 }
+            }
+        }
+    }
+
+    /// Returns the derivative of [`SpotProfile::falloff`] by `away`, perpendicular to `away`, from differences.
+    pub fn slope(&self, away: Vec3) -> Vec3 {
+        let along = |(axis, [after, before]): (Vec3, [f32; 2])| axis * ((after - before) / (2.0 * STEP));
+        around(away, |away| self.falloff(away)).map(along).into_iter().sum()
     }
 }
 
-/// Half the step of differences that estimate slopes of lobes, radians: an eighth of the width of the sharpest lobe.
+/// Half the step of differences that estimate slopes of lobes and images, radians: an eighth of the width of the
+/// sharpest lobe.
 const STEP: f32 = 0.03;
+
+/// Returns two axes across `away`, each with the shares a step along the axis and a step back.
+fn around(away: Vec3, share: impl Fn(Vec3) -> f32) -> [(Vec3, [f32; 2]); 2] {
+    let (u, v) = away.any_orthonormal_pair();
+    [u, v].map(|axis| (axis, [STEP, -STEP].map(|step| share((away + axis * step).normalize()))))
+}
 
 /// Lobe of a rough surface around the mirror direction of the light that it reflects.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -62,10 +94,8 @@ impl LobeProfile {
     /// Returns [`LobeProfile::share_and_slope`] and the sum of the magnitudes of the second derivatives along two axes.
     pub fn share_and_derivatives(&self, away: Vec3) -> (f32, Vec3, f32) {
         let share = self.share(away);
-        let (u, v) = away.any_orthonormal_pair();
         let (mut slope, mut curvature) = (Vec3::ZERO, 0.0);
-        for axis in [u, v] {
-            let [after, before] = [STEP, -STEP].map(|step| self.share((away + axis * step).normalize()));
+        for (axis, [after, before]) in around(away, |away| self.share(away)) {
             slope += axis * ((after - before) / (2.0 * STEP));
             curvature += (after + before - 2.0 * share).abs() / (STEP * STEP);
         }

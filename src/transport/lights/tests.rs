@@ -51,6 +51,7 @@ fn lights_far_off_send_their_photons_to_the_surfaces() {
             intensity,
             inner_angle: angle,
             outer_angle: 1.5 * angle,
+            image: None,
         };
         // Spots wider and narrower than the floor, as seen from there; the latter's pool of light is even in a radius
         // of .5 and falls to 0 at .75, up to a distance where angles round.
@@ -131,7 +132,7 @@ fn a_vpl_fills_a_quarter_of_a_cache_line() {
 
 #[test]
 fn spot_falloff_is_linear_in_angle_between_its_cones() {
-    let spot = SpotProfile { direction: Vec3::Z, inner_angle: 0.2, outer_angle: 0.6 };
+    let spot = SpotProfile::Cone { direction: Vec3::Z, inner_angle: 0.2, outer_angle: 0.6 };
     let at = |angle: f32| spot.falloff(Vec3::new(angle.sin(), 0.0, angle.cos()));
     assert_eq!((at(0.1), at(0.7)), (1.0, 0.0));
     assert!((at(0.4) - 0.5).abs() < 1e-5 && (at(0.5) - 0.25).abs() < 1e-5);
@@ -139,7 +140,7 @@ fn spot_falloff_is_linear_in_angle_between_its_cones() {
 
 #[test]
 fn a_spot_with_equal_cones_is_a_step() {
-    let spot = SpotProfile { direction: Vec3::Z, inner_angle: 0.5, outer_angle: 0.5 };
+    let spot = SpotProfile::Cone { direction: Vec3::Z, inner_angle: 0.5, outer_angle: 0.5 };
     assert_eq!(spot.falloff(Vec3::new(0.6f32.sin(), 0.0, 0.6f32.cos())), 0.0);
     assert_eq!(spot.falloff(Vec3::Z), 1.0);
 }

@@ -1,9 +1,8 @@
 //! Direct light at a point, sampled from one emitter, and at sixteen points.
 
-use super::delta::delta_irradiance;
+use super::delta::DeltaEmitter;
 use base::math::{F32x16, Rgb, U32x16, Vec3x16, mask_of};
 use glam::Vec3;
-use scene::DeltaLight;
 
 /// Light arriving at a point from a sampled point of one emitter.
 #[derive(Clone, Copy, Debug)]
@@ -25,8 +24,8 @@ pub struct DirectSample {
 impl DirectSample {
     /// Samples the light at `x` from a delta light that was chosen with probability `choice`; `None` if none arrives.
     #[inline]
-    pub(super) fn delta(light: &DeltaLight, x: Vec3, choice: f32) -> Option<DirectSample> {
-        let (direction, distance, irradiance) = delta_irradiance(light, x);
+    pub(super) fn delta(light: &DeltaEmitter, x: Vec3, choice: f32) -> Option<DirectSample> {
+        let (direction, distance, irradiance) = light.irradiance(x);
         let arrives = irradiance != Rgb::ZERO && irradiance.is_finite();
         arrives.then_some(DirectSample {
             direction,

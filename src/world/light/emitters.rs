@@ -1,7 +1,7 @@
 //! All emitters of a scene.
 
 use super::area::AreaLight;
-use super::delta::delta_power;
+use super::delta::DeltaEmitter;
 use super::environment::EnvironmentLight;
 use super::receivers::Receivers16;
 use super::select::EmitterChoice;
@@ -30,8 +30,8 @@ const MAX_TESTED: usize = 32;
 pub struct Emitters {
     /// Emitting meshes.
     pub areas: Vec<AreaLight>,
-    /// Point, spot and directional lights.
-    pub deltas: Vec<DeltaLight>,
+    /// Point, spot and directional lights, and projectors.
+    pub deltas: Vec<DeltaEmitter>,
     /// The environment with the discs before it; `None` if black.
     pub environment: Option<EnvironmentLight>,
     /// Index of the area light of each mesh.
@@ -53,7 +53,8 @@ impl Emitters {
             light_of_mesh[light.mesh as usize] = i as u32;
         }
         let environment = EnvironmentLight::new(scene.environment.as_ref(), &scene.discs);
-        let deltas = scene.lights.clone();
+        let prepare = |light: &DeltaLight| DeltaEmitter::new(*light, &scene.textures);
+        let deltas: Vec<DeltaEmitter> = scene.lights.iter().map(prepare).collect();
         let extents = [diagonal, scene.extent(diagonal)];
         let choice = EmitterChoice::new(&areas, &deltas, environment.as_ref(), extents);
         let sphere = |light: &AreaLight| {
@@ -62,7 +63,7 @@ impl Emitters {
         };
         let spheres: Vec<(Vec3, f32)> = areas.iter().map(sphere).collect();
         let radii_sq = areas.iter().zip(&spheres).map(|(light, (_, radius_sq))| (light.power, *radius_sq));
-        let of_deltas = deltas.iter().map(|light| (delta_power(light, 0.5 * diagonal), 0.0));
+        let of_deltas = deltas.iter().map(|light| (light.power(0.5 * diagonal), 0.0));
         let few_directions =
             environment.is_none() && radii_are_small(radii_sq.chain(of_deltas), 0.5 * diagonal);
         Emitters { spheres, areas, deltas, environment, light_of_mesh, few_directions, choice }
@@ -100,7 +101,7 @@ impl Emitters {
 
     /// Returns true if there is light from infinitely far.
     pub fn have_far(&self) -> bool {
-        let is_directional = |light: &DeltaLight| matches!(light, DeltaLight::Directional { .. });
+        let is_directional = |delta: &DeltaEmitter| matches!(delta.light, DeltaLight::Directional { .. });
         self.environment.is_some() || self.deltas.iter().any(is_directional)
     }
 

@@ -14,6 +14,10 @@ mod environment;
 mod factor;
 #[cfg(test)]
 mod factor_tests;
+mod falloff;
+mod image;
+#[cfg(test)]
+mod image_tests;
 mod learned;
 mod packet;
 mod receivers;
@@ -25,11 +29,13 @@ mod tree;
 mod triangles;
 
 pub use area::{AreaLight, AreaPoint};
-pub use delta::{delta_irradiance, delta_power, spot_falloff};
+pub use delta::DeltaEmitter;
 pub use direct::{DirectSample, DirectSamples16};
 pub use distribution::DiscreteDistribution;
 pub use emitters::Emitters;
 pub use environment::{EnvironmentLight, EnvironmentSample, LearnedSky, SkyObservations};
+pub use falloff::spot_falloff;
+pub use image::ImageLight;
 pub use learned::Learned;
 pub use receivers::Receivers16;
 pub use regions::Regions;

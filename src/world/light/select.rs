@@ -5,12 +5,12 @@
 //! emitter is starved. The choice continues down the tree.
 
 use super::area::AreaLight;
+use super::delta::DeltaEmitter;
 use super::distribution::DiscreteDistribution;
 use super::environment::EnvironmentLight;
 use super::receivers::Receivers16;
 use super::tree::{BY_POWER, EmitterObservations, EmitterTree, LearnedEmitters, PointAndNormal};
 use base::math::{F32x16, LANES, U32x16, lanes_in};
-use scene::DeltaLight;
 use std::f32::consts::PI;
 
 /// Maximum number of candidates that are weighted one by one at every shaded point, the environment included.
@@ -41,7 +41,7 @@ impl EmitterChoice {
     /// Builds the tree, in a scene of the given diagonals (see [`EmitterTree::new`]).
     pub fn new(
         areas: &[AreaLight],
-        deltas: &[DeltaLight],
+        deltas: &[DeltaEmitter],
         environment: Option<&EnvironmentLight>,
         extents: [f32; 2],
     ) -> EmitterChoice {

@@ -31,6 +31,7 @@ fn scene(count: usize, seed: u32) -> Scene {
                     intensity: strength,
                     inner_angle,
                     outer_angle,
+                    image: None,
                 });
             }
             2 if i % 5 == 0 => {
@@ -123,7 +124,7 @@ fn irradiance(emitters: &Emitters, index: usize, (x, n): (Vec3, Vec3), steps: u3
     }
     match emitters.deltas.get(index - emitters.areas.len()) {
         Some(light) => {
-            let (direction, _, irradiance) = delta_irradiance(light, x);
+            let (direction, _, irradiance) = light.irradiance(x);
             f64::from(luminance(irradiance) * n.dot(direction).max(0.0))
         }
         None => f64::from(PI * 0.1),

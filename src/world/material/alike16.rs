@@ -30,7 +30,7 @@ impl<'m> AlikeBsdfs16<'m> {
         };
         for lane in 0..LANES {
             let (bsdf, wo) = at(lane);
-            if !bsdf.same_lobes(&first) || bsdf.coat() != first.coat() || bsdf.model.kinds.transmit {
+            if !bsdf.same_lobes(&first) || bsdf.coat() != first.coat() || bsdf.model.kinds.across {
                 return None;
             }
             all.wo.set(lane, wo);

@@ -42,13 +42,18 @@ impl<'m> Bsdf<'m> {
     pub fn eval_pdf(&self, wo: Vec3, wi: Vec3) -> (Rgb, f32) {
         let side = self.side(wo);
         let (wo, wi) = (Vec3::new(wo.x, wo.y, wo.z * side), Vec3::new(wi.x, wi.y, wi.z * side));
-        if !(wo.z > 0.0 && wi.z > 0.0 || self.model.kinds.transmit) {
+        if !(wo.z > 0.0 && wi.z > 0.0 || self.model.kinds.across) {
             return (Rgb::ZERO, 0.0);
         }
         if self.is_lambert() {
             return (self.base, wi.z * FRAC_1_PI);
         }
         self.eval_pdf_layered(&self.outgoing(wo), wi)
+    }
+
+    /// Returns true if light is reflected diffusely, so that photons and virtual lights are stored on the surface.
+    pub fn stores_light(&self) -> bool {
+        self.base != Rgb::ZERO || self.any_lobe(LobeModel::may_count_as_diffuse)
     }
 
     /// Returns true if light is scattered into more than isolated directions.
@@ -84,7 +89,7 @@ impl<'m> Bsdf<'m> {
 
     /// Returns true if part of the light is scattered to the other side in more than isolated directions.
     pub fn scatters_across(&self) -> bool {
-        self.model.kinds.transmit && self.any_lobe(LobeModel::scatters_across)
+        self.model.kinds.across && self.any_lobe(LobeModel::scatters_across)
     }
 
     /// Returns true if part of the light passes straight through the surface.
@@ -367,7 +372,7 @@ impl<'m> Bsdf<'m> {
     #[inline(always)]
     fn directions(&self, wo: Vec3, wi: Vec3) -> Option<Directions> {
         // Refraction does not use the facet between opposite directions.
-        let opposite = || self.model.kinds.transmit.then_some(Directions { wo, wi, half: Vec3::Z });
+        let opposite = || self.model.kinds.across.then_some(Directions { wo, wi, half: Vec3::Z });
         Directions::new(wo, wi).or_else(opposite)
     }
 

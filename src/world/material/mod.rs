@@ -3,7 +3,8 @@
 //!
 //! A material is a Lambertian base, with or without a dielectric coat, and lobes (see [`scene::Material`]). It may have
 //! gaps. Definitions are those of Mitsuba 3, so that images agree with its references: `diffuse`, `plastic`,
-//! `roughplastic`, `conductor`, `roughconductor`, `dielectric`, `roughdielectric`, `principled`, `mask` and `twosided`.
+//! `roughplastic`, `conductor`, `roughconductor`, `dielectric`, `roughdielectric`, `principled`,
+//! `principledthin`, `mask` and `twosided`.
 //!
 //! Files use only files before them in this order: `microfacet`, `fresnel`, `table` and `albedo`; `means`; `base` and
 //! `lobe` (one file per lobe); `model` and `lobe_set` (data); `bsdf`, `sample`, `bound`, `packet`, `alike16`,

@@ -56,6 +56,8 @@ pub(super) struct LobeKinds {
     pub delta: bool,
     /// The two sides of the surface are the two sides of one interface.
     pub transmit: bool,
+    /// Light may be scattered to the other side.
+    pub across: bool,
     /// Light may go to the other side, through the surface or through gaps in it.
     pub pass_light: bool,
 }
@@ -65,11 +67,13 @@ impl LobeKinds {
     pub fn of(lobes: &[LobeModel]) -> LobeKinds {
         let any = |property: fn(&LobeModel) -> bool| lobes.iter().any(property);
         let transmit = any(LobeModel::transmits);
+        let across = transmit || any(|lobe| matches!(lobe, LobeModel::Thin(_)));
         LobeKinds {
             smooth: any(|lobe| !lobe.is_delta()),
             delta: any(LobeModel::is_delta),
             transmit,
-            pass_light: transmit || any(|lobe| matches!(lobe, LobeModel::Gap)),
+            across,
+            pass_light: across || any(|lobe| matches!(lobe, LobeModel::Gap)),
         }
     }
 }

@@ -66,7 +66,7 @@ impl<'m> PreparedBsdf<'m> {
     #[inline]
     pub fn eval_pdf16(&self, wi: &Vec3x16) -> (Vec3x16, F32x16) {
         let mut sum = ValuePdf16::ZERO;
-        if self.bsdf.model.kinds.transmit {
+        if self.bsdf.model.kinds.across {
             self.eval_one_by_one(wi, &mut sum);
         } else if self.is_lambert() && self.is_seen() {
             self.eval_lambert(wi, &mut sum);
@@ -80,7 +80,7 @@ impl<'m> PreparedBsdf<'m> {
     #[inline]
     pub fn sample16(&self, u_lobe: &F32x16, u: &Vec2x16, wanted: u16) -> BsdfSamples16 {
         let kinds = &self.bsdf.model.kinds;
-        if kinds.transmit || kinds.pass_light && !self.is_seen() {
+        if kinds.across || kinds.pass_light && !self.is_seen() {
             return self.sample_one_by_one(u_lobe, u, wanted);
         }
         if !self.is_seen() {
@@ -99,7 +99,7 @@ impl<'m> PreparedBsdf<'m> {
     /// Returns [`Bsdf::eval_lobes`] in all lanes.
     pub fn eval_lobes16(&self, lobes: LobeSet, wi: &Vec3x16) -> Vec3x16 {
         let mut sum = ValuePdf16::ZERO;
-        if self.bsdf.model.kinds.transmit {
+        if self.bsdf.model.kinds.across {
             for l in 0..LANES {
                 sum.value.set(l, self.bsdf.eval_lobes(lobes, self.wo, wi.get(l)));
             }
@@ -128,6 +128,7 @@ impl<'m> PreparedBsdf<'m> {
 
     /// Evaluates directions lane by lane.
     fn eval_one_by_one(&self, wi: &Vec3x16, sum: &mut ValuePdf16) {
+        let wi = self.turned(wi);
         for l in 0..LANES {
             let (value, pdf) = self.bsdf.eval_pdf_layered(&self.outgoing, wi.get(l));
             sum.value.set(l, value);

@@ -5,7 +5,7 @@
 
 use super::lobe::{
     AnisotropicLobe, ClearCoat, Grazing, GrazingKind, LobeModel, MAX_LOBES, Passage, RoughInterface,
-    RoughLobe,
+    RoughLobe, Thin, ThinFacets,
 };
 use super::microfacet::Microfacets;
 use super::model::Colours;
@@ -44,6 +44,10 @@ enum PrincipledLobe {
     Retro,
     ClearCoat,
     Sheen,
+    /// Transmission of a sheet around the direction of the light.
+    ThinRough,
+    /// Diffuse transmission of a sheet.
+    ThinDiffuse,
 }
 
 /// Parameters at a point.
@@ -59,6 +63,8 @@ struct PrincipledValues {
     clearcoat: f32,
     /// Factor on transmitted light.
     tint: Rgb,
+    /// Share of the diffuse light that a sheet transmits; `None` for other surfaces.
+    thin: Option<f32>,
 }
 
 impl PrincipledValues {
@@ -80,12 +86,18 @@ impl PrincipledValues {
                 true => colour,
                 false => Rgb::from_array(colour.to_array().map(f32::sqrt)),
             },
+            thin: p.thin.as_ref().map(share),
         }
     }
 
     /// Returns the albedo of the diffuse base.
     fn diffuse(&self) -> Rgb {
-        self.colour * ((1.0 - self.metallic) * (1.0 - self.spec_trans))
+        self.colour * ((1.0 - self.metallic) * (1.0 - self.spec_trans) * (1.0 - self.thin.unwrap_or(0.0)))
+    }
+
+    /// Returns the factor on specular reflection, which a sheet has only where it transmits light.
+    fn specular(&self) -> f32 {
+        if self.thin.is_some() { self.spec_trans } else { 1.0 }
     }
 
     /// Returns the reflectance with a hue at normal incidence.
@@ -103,17 +115,22 @@ impl PrincipledValues {
     fn factor(&self, lobe: PrincipledLobe, eta: f32) -> Rgb {
         let transmitted = (1.0 - self.metallic) * self.spec_trans;
         match lobe {
-            PrincipledLobe::Dielectric => Rgb::splat((1.0 - self.metallic) * (1.0 - self.spec_tint)),
-            PrincipledLobe::Hued => Rgb::ONE,
-            PrincipledLobe::HuedNormal => self.hued_normal(eta),
-            PrincipledLobe::HuedEdge => Rgb::splat(self.hued_edge()),
+            PrincipledLobe::Dielectric => {
+                Rgb::splat((1.0 - self.metallic) * (1.0 - self.spec_tint) * self.specular())
+            }
+            PrincipledLobe::Hued => Rgb::splat(self.specular()),
+            PrincipledLobe::HuedNormal => self.hued_normal(eta) * self.specular(),
+            PrincipledLobe::HuedEdge => Rgb::splat(self.hued_edge() * self.specular()),
+            PrincipledLobe::ThinRough => self.colour * self.spec_trans,
+            PrincipledLobe::ThinDiffuse => self.colour * ((1.0 - self.spec_trans) * self.thin.unwrap_or(0.0)),
             PrincipledLobe::Transmission => self.tint * transmitted,
             PrincipledLobe::Inside => Rgb::splat(transmitted),
             PrincipledLobe::Retro => self.diffuse(),
             PrincipledLobe::ClearCoat => Rgb::splat(self.clearcoat),
             PrincipledLobe::Sheen => {
                 let hue = Rgb::ONE.lerp(self.hue, self.sheen_tint);
-                hue * (self.sheen * (1.0 - self.metallic))
+                let of_sheet = self.thin.map_or(1.0, |thin| (1.0 - thin) * (1.0 - self.spec_trans));
+                hue * (self.sheen * (1.0 - self.metallic) * of_sheet)
             }
         }
     }
@@ -133,6 +150,9 @@ impl LobeBuilder<'_> {
     /// Builds all lobes. Most lack their tables of albedo.
     fn all(&self, tables: &mut Tables) -> Vec<(PrincipledLobe, LobeModel)> {
         let p = self.parameters;
+        if let Some(transmitted) = p.thin {
+            return self.of_sheet(transmitted);
+        }
         let is_dielectric = not_all(p.metallic);
         let mut all = self.reflection();
         if is_dielectric && some(p.spec_trans) && p.eta != 1.0 {
@@ -147,6 +167,39 @@ impl LobeBuilder<'_> {
         }
         if is_dielectric && some(p.sheen) {
             all.push((PrincipledLobe::Sheen, LobeModel::Grazing(Grazing::new(GrazingKind::Sheen))));
+        }
+        all
+    }
+
+    /// Builds all lobes of a thin sheet that transmits a share of its diffuse light.
+    fn of_sheet(&self, transmitted: Share) -> Vec<(PrincipledLobe, LobeModel)> {
+        let p = self.parameters;
+        let mut all = Vec::new();
+        if some(p.spec_trans) {
+            all.extend(self.reflection());
+            // Burley 2015, figure 15.
+            let roughness = (0.65 * p.eta - 0.35) * self.roughness;
+            let facets = Microfacets::new(Distribution::Ggx, (roughness * roughness).max(MIN_ALPHA));
+            let facets = match (LobeBuilder { facets, ..*self }).brushed() {
+                Some(alpha) => {
+                    let lobe = AnisotropicLobe::new(Distribution::Ggx, alpha, Fresnel::One);
+                    ThinFacets::Anisotropic(lobe)
+                }
+                None => ThinFacets::Isotropic(RoughLobe::new(facets, Fresnel::One)),
+            };
+            all.push((PrincipledLobe::ThinRough, LobeModel::Thin(Thin::Rough { facets, eta: p.eta })));
+        }
+        if not_all(p.spec_trans) {
+            if some(transmitted) {
+                all.push((PrincipledLobe::ThinDiffuse, LobeModel::Thin(Thin::Diffuse)));
+            }
+            if not_all(transmitted) {
+                let kind = GrazingKind::Retro { roughness: self.roughness };
+                all.push((PrincipledLobe::Retro, LobeModel::Grazing(Grazing::new(kind))));
+            }
+            if some(p.sheen) && not_all(transmitted) {
+                all.push((PrincipledLobe::Sheen, LobeModel::Grazing(Grazing::new(GrazingKind::Sheen))));
+            }
         }
         all
     }
@@ -173,15 +226,23 @@ impl LobeBuilder<'_> {
         all
     }
 
+    /// Returns the roughness α along u and along v, if they differ.
+    fn brushed(&self) -> Option<[f32; 2]> {
+        if self.parameters.anisotropic == Share::Constant(0.0) {
+            return None;
+        }
+        let alpha = self.parameters.stretch.alphas(self.facets.alpha, self.anisotropy);
+        Some(alpha.map(|alpha| alpha.max(MIN_ALPHA)))
+    }
+
     /// Builds a lobe of microfacet reflection.
     fn rough(&self, fresnel: Fresnel) -> LobeModel {
-        let facets = self.facets;
-        if self.parameters.anisotropic == Share::Constant(0.0) {
-            return LobeModel::Rough(RoughLobe::new(facets, fresnel));
+        match self.brushed() {
+            None => LobeModel::Rough(RoughLobe::new(self.facets, fresnel)),
+            Some(alpha) => {
+                LobeModel::Anisotropic(AnisotropicLobe::new(self.facets.distribution, alpha, fresnel))
+            }
         }
-        let alpha = self.parameters.stretch.alphas(facets.alpha, self.anisotropy);
-        let alpha = alpha.map(|alpha| alpha.max(MIN_ALPHA));
-        LobeModel::Anisotropic(AnisotropicLobe::new(facets.distribution, alpha, fresnel))
     }
 
     /// Builds a lobe of the rough dielectric interface.
@@ -229,7 +290,7 @@ impl PrincipledColours {
     pub fn is_linear(&self) -> bool {
         let p = &self.parameters;
         let none = |share: Share| share == Share::Constant(0.0);
-        let shares = [p.metallic, p.sheen, p.clearcoat];
+        let shares = [p.metallic, p.sheen, p.clearcoat, p.thin.unwrap_or(Share::Constant(0.0))];
         // The hue is not linear in the colour.
         let without_hue = none(p.spec_tint) && (none(p.sheen_tint) || none(p.sheen));
         without_hue && none(p.spec_trans) && !shares.iter().any(Share::is_textured)

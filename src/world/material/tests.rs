@@ -11,6 +11,7 @@ mod gaps;
 mod prepared;
 mod rough_glass;
 mod sampling;
+mod sheets;
 
 use super::*;
 use crate::testkit::textured_materials as scene;
@@ -131,6 +132,21 @@ fn principled_materials() -> Vec<Material> {
 
 fn principled_glass() -> Material {
     principled("principled_glass", Principled { spec_trans: 0.7.into(), eta: 1.4, ..Principled::default() })
+}
+
+/// Returns thin sheets that transmit light: diffuse light, both, and around the direction of the light alone.
+fn sheets() -> Vec<Material> {
+    let of = |diffuse: f32, specular: f32, roughness: f32| Principled {
+        thin: Some(diffuse.into()),
+        spec_trans: specular.into(),
+        roughness: roughness.into(),
+        ..Principled::default()
+    };
+    let matte = Principled { sheen: 0.6.into(), sheen_tint: 0.5.into(), ..of(0.4, 0.0, 0.4) };
+    let glossy = Principled { spec_tint: 0.3.into(), sheen: 0.3.into(), eta: 1.4, ..of(0.6, 0.7, 0.5) };
+    let clear = Principled { anisotropic: 0.5, eta: 1.6, ..of(0.0, 1.0, 0.45) };
+    let two_sided = |name: &str, p: Principled| Material { two_sided: true, ..principled(name, p) };
+    vec![two_sided("thin_matte", matte), two_sided("thin_glossy", glossy), two_sided("thin_clear", clear)]
 }
 
 fn label(distribution: Distribution) -> &'static str {

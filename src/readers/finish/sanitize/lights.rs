@@ -7,7 +7,7 @@ use crate::error::{Location, SceneError};
 use crate::finish::dark::is_dark_emission;
 use crate::finish::recentre::LocalCoordinates;
 use base::math::Rgb;
-use scene::{DeltaLight, Environment};
+use scene::{DeltaLight, Environment, Texture, TextureId};
 
 /// Checks all lights, and drops black ones.
 pub(super) fn check_lights(
@@ -24,7 +24,9 @@ pub(super) fn check_lights(
     }
     let before = draft.lights.len() + scene.discs.len();
     scene.discs.retain(|disc| disc.radiance != Rgb::ZERO);
-    draft.lights.retain(|(light, _)| power(light) != Rgb::ZERO);
+    let textures = &scene.textures;
+    let is_dark_image = |id: TextureId| textures.by_id(id).is_some_and(is_dark_texture);
+    draft.lights.retain(|(light, _)| power(light) != Rgb::ZERO && !image(light).is_some_and(is_dark_image));
     report.black_lights += before - draft.lights.len() - scene.discs.len();
     if let Some(environment) = &mut scene.environment
         && is_dark(environment, &place, report)?
@@ -47,8 +49,23 @@ fn check_light(light: Rgb, what: &str, place: &Location) -> Result<(), SceneErro
 fn power(light: &DeltaLight) -> Rgb {
     match light {
         DeltaLight::Point { intensity, .. } | DeltaLight::Spot { intensity, .. } => *intensity,
+        DeltaLight::Projector { projector, .. } => projector.intensity,
         DeltaLight::Directional { irradiance, .. } => *irradiance,
     }
+}
+
+/// Returns the texture of a light.
+fn image(light: &DeltaLight) -> Option<TextureId> {
+    match light {
+        DeltaLight::Spot { image, .. } => image.map(|image| image.texture),
+        DeltaLight::Projector { projector, .. } => projector.texture,
+        DeltaLight::Point { .. } | DeltaLight::Directional { .. } => None,
+    }
+}
+
+/// Returns true if no texel emits light.
+fn is_dark_texture(texture: &Texture) -> bool {
+    texture.texels.all(|texel| texel.max_element() <= 0.0)
 }
 
 /// Checks the emission of meshes, and drops black emission and that of surfaces that are not there.

@@ -25,6 +25,9 @@ pub(super) fn check_material(
     let checks = MaterialChecks { name: material.name.clone(), place };
     if let Some(principled) = &material.principled {
         checks.principled(principled)?;
+        if let Some(thin) = &principled.thin {
+            checks.thin(thin, textures, report)?;
+        }
     }
     for lobe in &mut material.lobes {
         checks.lobe(lobe, textures, report)?;
@@ -80,6 +83,26 @@ impl MaterialChecks<'_> {
         if !(0.0..=1.0).contains(&principled.clearcoat_gloss) {
             let what = format!("its clear coat's gloss is {}", principled.clearcoat_gloss);
             return Err(self.wrong(what, "give 0 to 1"));
+        }
+        Ok(())
+    }
+
+    /// Checks the share of diffuse light that a sheet transmits. The factor on its texels may be below 1.
+    fn thin(
+        &self,
+        share: &Share,
+        textures: &mut [Texture],
+        report: &mut SanitizeReport,
+    ) -> Result<(), SceneError> {
+        let (Share::Constant(value) | Share::Textured { scale: value, .. }) = *share;
+        if !(0.0..=1.0 + ALBEDO_SLACK).contains(&value) {
+            let what = format!("it transmits {} of its diffuse light", 2.0 * value);
+            return Err(self.wrong(what, "give 0 to 2"));
+        }
+        if let Share::Textured { texture, .. } = share
+            && let Some(texture) = textures.get_mut(texture.0 as usize)
+        {
+            limit_texels(texture, Rgb::splat(value.max(f32::MIN_POSITIVE).recip()), report);
         }
         Ok(())
     }
@@ -236,7 +259,11 @@ fn scale_sum(
 }
 
 pub(super) fn clamp_texels(texture: &mut Texture, scale: Rgb, report: &mut SanitizeReport) {
-    let limit = scale.max(Rgb::ONE).recip();
+    limit_texels(texture, scale.max(Rgb::ONE).recip(), report);
+}
+
+/// Clamps texels to numbers from 0 to `limit`.
+fn limit_texels(texture: &mut Texture, limit: Rgb, report: &mut SanitizeReport) {
     let fits = |texel: Rgb| texel.cmpge(Rgb::ZERO).all() && texel.cmple(limit).all();
     if texture.texels.all(fits) {
         return;

@@ -8,7 +8,7 @@ fn what_is_not_modelled_is_replaced_with_a_warning_of_its_line() {
     let cases = [
         ("<bsdf type=\"coating\"><bsdf type=\"dielectric\"/></bsdf>", "coating of"),
         ("<bsdf type=\"principled\"><float name=\"flatness\" value=\"0.5\"/></bsdf>", "flatness"),
-        ("<bsdf type=\"roughdiffuse\"><rgb name=\"reflectance\" value=\"0.3\"/></bsdf>", "rough diffuse"),
+        ("<bsdf type=\"roughdiffuse\"><rgb name=\"reflectance\" value=\"0.3\"/></bsdf>", "roughdiffuse"),
         ("<bsdf type=\"phong\"><float name=\"exponent\" value=\"98\"/></bsdf>", "\"phong\""),
         ("<bsdf type=\"velvet\"/>", "\"velvet\""),
         ("<bsdf type=\"diffuse\"><float name=\"sheen\" value=\"1\"/></bsdf>", "\"sheen\""),

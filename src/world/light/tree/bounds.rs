@@ -1,8 +1,8 @@
 //! Extent, directions and power of emitters and of sets of emitters.
 
 use super::cone::{EmissionCone, angle_between};
-use crate::light::{AreaLight, delta_power};
-use base::math::luminance;
+use crate::light::{AreaLight, DeltaEmitter};
+use base::math::{Rgb, luminance};
 use glam::Vec3;
 use scene::DeltaLight;
 use std::f32::consts::{FRAC_PI_2, PI};
@@ -52,9 +52,9 @@ impl EmitterBounds {
         }
     }
 
-    /// Bounds a point, spot or directional light, in a scene of the given diagonal.
-    pub fn of_delta(light: &DeltaLight, diagonal: f32) -> EmitterBounds {
-        let power = delta_power(light, 0.5 * diagonal);
+    /// Bounds a point, spot or directional light, or a projector, in a scene of the given diagonal.
+    pub fn of_delta(delta: &DeltaEmitter, diagonal: f32) -> EmitterBounds {
+        let power = delta.power(0.5 * diagonal);
         let at = |position, cone, intensity| EmitterBounds {
             low: position,
             high: position,
@@ -62,12 +62,19 @@ impl EmitterBounds {
             power,
             peak: PI * luminance(intensity),
         };
-        match *light {
+        if let (Some(image), DeltaLight::Spot { position, .. } | DeltaLight::Projector { position, .. }) =
+            (&delta.image, delta.light)
+        {
+            let cone = EmissionCone { axis: image.axis(), normals: 0.0, emission: image.angle };
+            return at(position, cone, Rgb::splat(image.mean_intensity()));
+        }
+        match delta.light {
             DeltaLight::Point { position, intensity } => at(position, EmissionCone::ALL, intensity),
             DeltaLight::Spot { position, direction, intensity, outer_angle, .. } => {
                 let cone = EmissionCone { axis: direction, normals: 0.0, emission: outer_angle };
                 at(position, cone, intensity)
             }
+            DeltaLight::Projector { position, .. } => at(position, EmissionCone::ALL, Rgb::ZERO),
             // A point at a distance at which direction and distance hardly vary within the scene.
             DeltaLight::Directional { direction, irradiance } => {
                 let distance = FAR * diagonal;

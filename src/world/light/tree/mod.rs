@@ -16,6 +16,7 @@ mod learned;
 mod node;
 
 use super::area::AreaLight;
+use super::delta::DeltaEmitter;
 use base::math::{F32x16, LANES, Vec3x16};
 pub use bounds::EmitterBounds;
 use branch::Branch;
@@ -23,7 +24,6 @@ use build::{BinaryNode, Content, build};
 pub use learned::{EmitterObservations, LearnedEmitters};
 pub(super) use node::PointAndNormal;
 use node::{ARITY, EmitterNode, TreeChild};
-use scene::DeltaLight;
 
 pub(super) use node::BY_POWER;
 
@@ -54,7 +54,7 @@ impl EmitterTree {
     /// cut's nodes.
     pub fn new(
         areas: &[AreaLight],
-        deltas: &[DeltaLight],
+        deltas: &[DeltaEmitter],
         [diagonal, extent]: [f32; 2],
         top: usize,
     ) -> (EmitterTree, Vec<f32>) {

@@ -19,6 +19,7 @@ mod rough;
 mod rough_interface;
 mod sample;
 mod shape;
+mod thin;
 
 pub(super) use anisotropic::AnisotropicLobe;
 pub(super) use clear_coat::ClearCoat;
@@ -34,3 +35,4 @@ pub(super) use rough::{DIFFUSE_ALPHA, RoughLobe};
 pub(super) use rough_interface::RoughInterface;
 pub use sample::BsdfSample;
 pub use shape::{LobeShape, ReflectedLobe};
+pub(super) use thin::{Thin, ThinFacets};

@@ -2,8 +2,8 @@
 
 use super::{
     AnisotropicLobe, BsdfSample, ClearCoat, Directions, Directions16, FacetBound, FacetBounds16, Grazing,
-    Interface, LobeLanes, Mirror, ReflectedLobe, RoughInterface, RoughLobe, Sampled16, SeenLobe, ValuePdf16,
-    mean,
+    Interface, LobeLanes, Mirror, ReflectedLobe, RoughInterface, RoughLobe, Sampled16, SeenLobe, Thin,
+    ValuePdf16, mean,
 };
 use base::math::{Rgb, Vec2x16, Vec3x16};
 use glam::{Vec2, Vec3};
@@ -21,6 +21,7 @@ pub(in crate::material) enum LobeModel {
     RoughInterface(RoughInterface),
     ClearCoat(ClearCoat),
     Grazing(Grazing),
+    Thin(Thin),
     /// Gaps in the surface, through which light passes straight.
     Gap,
 }
@@ -41,6 +42,7 @@ impl LobeModel {
             | LobeModel::Anisotropic(_)
             | LobeModel::ClearCoat(_)
             | LobeModel::Grazing(_)
+            | LobeModel::Thin(_)
             | LobeModel::Gap => false,
         }
     }
@@ -63,7 +65,7 @@ impl LobeModel {
     /// Returns true if the lobe scatters light to the other side in more than isolated directions.
     #[inline]
     pub fn scatters_across(&self) -> bool {
-        matches!(self, LobeModel::RoughInterface(_))
+        matches!(self, LobeModel::RoughInterface(_) | LobeModel::Thin(_))
     }
 
     /// Returns true if the lobe is rough, but too sharp to count as diffuse.
@@ -71,7 +73,10 @@ impl LobeModel {
     pub fn is_glossy(&self) -> bool {
         match self {
             LobeModel::Rough(rough) => rough.is_glossy(),
-            LobeModel::RoughInterface(_) | LobeModel::ClearCoat(_) | LobeModel::Anisotropic(_) => true,
+            LobeModel::RoughInterface(_)
+            | LobeModel::ClearCoat(_)
+            | LobeModel::Anisotropic(_)
+            | LobeModel::Thin(_) => true,
             _ => false,
         }
     }
@@ -83,7 +88,10 @@ impl LobeModel {
     pub fn is_sharp(&self) -> bool {
         match self {
             LobeModel::Rough(rough) => rough.is_sharp(),
-            LobeModel::RoughInterface(_) | LobeModel::ClearCoat(_) | LobeModel::Anisotropic(_) => true,
+            LobeModel::RoughInterface(_)
+            | LobeModel::ClearCoat(_)
+            | LobeModel::Anisotropic(_)
+            | LobeModel::Thin(_) => true,
             _ => false,
         }
     }
@@ -94,6 +102,7 @@ impl LobeModel {
             LobeModel::Rough(rough) => rough.alpha(),
             LobeModel::Anisotropic(rough) => rough.min_alpha(),
             LobeModel::ClearCoat(coat) => coat.alpha(),
+            LobeModel::Thin(thin) => thin.min_alpha(),
             _ => 1.0,
         }
     }
@@ -117,6 +126,7 @@ impl LobeModel {
             LobeModel::RoughInterface(rough) => rough.eval_pdf(scale, probability, directions),
             LobeModel::ClearCoat(coat) => coat.eval_pdf(scale, probability, directions),
             LobeModel::Grazing(grazing) => grazing.eval_pdf(scale, probability, directions),
+            LobeModel::Thin(thin) => thin.eval_pdf(scale, probability, directions),
             _ => (Rgb::ZERO, 0.0),
         }
     }
@@ -130,6 +140,7 @@ impl LobeModel {
             LobeModel::RoughInterface(rough) => rough.sample(wo, u),
             LobeModel::ClearCoat(coat) => coat.sample(wo, u),
             LobeModel::Grazing(grazing) => grazing.sample(wo, u),
+            LobeModel::Thin(thin) => thin.sample(wo, u),
             _ => None,
         }
     }
@@ -160,6 +171,7 @@ impl LobeModel {
             LobeModel::RoughInterface(rough) => rough.sampling_weight(scale, wo.z),
             LobeModel::ClearCoat(coat) => coat.sampling_weight(scale, wo.z),
             LobeModel::Grazing(grazing) => mean(grazing.albedo(scale, wo.z)),
+            LobeModel::Thin(thin) => mean(thin.albedo(scale, wo.z)),
             LobeModel::Gap => mean(scale),
         }
     }
@@ -172,7 +184,17 @@ impl LobeModel {
             LobeModel::RoughInterface(rough) => rough.albedo(scale, cos),
             LobeModel::ClearCoat(coat) => coat.albedo(scale, cos),
             LobeModel::Grazing(grazing) => grazing.albedo(scale, cos),
+            LobeModel::Thin(thin) => thin.albedo(scale, cos),
             _ => Rgb::ZERO,
+        }
+    }
+
+    /// Returns true if the lobe may be wide enough to count as diffuse.
+    pub fn may_count_as_diffuse(&self) -> bool {
+        match self {
+            LobeModel::Rough(rough) => !rough.is_glossy(),
+            LobeModel::Grazing(_) => true,
+            _ => false,
         }
     }
 

@@ -3,11 +3,13 @@
 use super::*;
 use ::base::math::{F32x16, LANES, Vec2x16, Vec3x16};
 
-/// Returns materials of every kind: smooth ones, delta lobes, gaps and both kinds of glass, one-sided and two-sided.
+/// Returns materials of every kind: smooth ones, delta lobes, gaps, both kinds of glass and thin sheets. All are
+/// one-sided and two-sided.
 fn all_materials() -> Vec<Material> {
     let mut all = smooth_materials();
     all.extend([mirror(GOLD), glass(1.5), principled_glass()]);
     all.extend([rough_glass(Distribution::Ggx, 0.3, 1.5), rough_glass(Distribution::Beckmann, 0.1, 0.7)]);
+    all.extend(sheets());
     all.push(Material { name: "gaps in plastic".into(), ..masked(0.5, plastic(true)) });
     all.push(Material { name: "gaps in paint".into(), ..masked(0.3, lambert(PAINT)) });
     all.push(Material { name: "coat alone".into(), lobes: Vec::new(), ..plastic(false) });
