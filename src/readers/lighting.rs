@@ -38,7 +38,7 @@ impl UpAxis {
     }
 
     /// Returns the rotation that turns y to the axis, and +z to the front.
-    fn from_y(self) -> DMat4 {
+    fn turn_from_y(self) -> DMat4 {
         match self {
             UpAxis::Y => DMat4::IDENTITY,
             UpAxis::Z => DMat4::from_rotation_x(FRAC_PI_2),
@@ -50,7 +50,7 @@ impl UpAxis {
     pub(crate) fn direction(self, [azimuth, elevation]: [f64; 2]) -> DVec3 {
         let (sin, cos) = azimuth.to_radians().sin_cos();
         let (rise, level) = elevation.to_radians().sin_cos();
-        self.from_y().transform_vector3(DVec3::new(sin * level, rise, cos * level))
+        self.turn_from_y().transform_vector3(DVec3::new(sin * level, rise, cos * level))
     }
 }
 
@@ -147,7 +147,7 @@ impl Lighting {
             EnvironmentChoice::Constant(radiance) => EnvironmentPlan::Constant(radiance),
             EnvironmentChoice::Map(path) => {
                 let turn = DMat4::from_axis_angle(up.vector(), self.rotation.to_radians());
-                EnvironmentPlan::Map { place, path, scale: 1.0, to_world: turn * up.from_y() }
+                EnvironmentPlan::Map { place, path, scale: 1.0, to_world: turn * up.turn_from_y() }
             }
             EnvironmentChoice::Sky([azimuth, elevation]) => {
                 let towards_sun = up.direction([azimuth + self.rotation, elevation]);

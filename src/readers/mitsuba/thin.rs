@@ -27,13 +27,7 @@ impl Converter<'_> {
         if bsdf.has("eta") {
             principled.eta = self.ior(bsdf, "eta", "bk7")? as f32;
         }
-        principled.anisotropic = match self.share(bsdf, "anisotropic", 0.0)? {
-            Share::Constant(anisotropic) => anisotropic,
-            Share::Textured { .. } => {
-                self.log.warn(&bsdf.place, "a textured anisotropic is not modelled", "it is left out")?;
-                0.0
-            }
-        };
+        principled.anisotropic = self.share(bsdf, "anisotropic", 0.0)?;
         if self.share(bsdf, "flatness", 0.0)? != Share::Constant(0.0) {
             self.log.warn(&bsdf.place, "flatness is not modelled", "it is left out")?;
         }

@@ -148,7 +148,7 @@ impl ImageLight {
     #[inline]
     fn texel(&self, at: Vec2) -> Rgb {
         let uv = Vec2::new(0.5 + 0.5 * at.x, 0.5 - 0.5 * at.y);
-        self.texture.map_or(Rgb::ONE, |id| self.textures.lookup(id, uv)).max(Rgb::ZERO)
+        self.texture.map_or(Rgb::ONE, |id| self.textures.lookup(id, uv, |_| Rgb::ONE)).max(Rgb::ZERO)
     }
 
     /// Estimates the flux through a cell.
