@@ -69,7 +69,7 @@ fn thin_sheets_are_read_whole() {
     let (sheet, warnings) = bsdf(text);
     let p = sheet.principled.expect("one");
     assert_eq!((p.thin, p.spec_trans, warnings, sheet.two_sided), (Some(0.75.into()), 0.25.into(), 0, true));
-    assert!((p.eta - 1.33).abs() < 1e-6 && p.anisotropic == 0.5 && p.metallic == 0.0.into());
+    assert!((p.eta - 1.33).abs() < 1e-6 && p.anisotropic == 0.5.into() && p.metallic == 0.0.into());
     let checkers = "<texture name=\"diff_trans\" type=\"checkerboard\"><float name=\"color0\" value=\".4\"/>\
         <float name=\"color1\" value=\"1.4\"/></texture>";
     let loaded = load_body(&format!(
