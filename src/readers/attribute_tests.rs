@@ -117,7 +117,12 @@ fn ply_without_colours() -> Vec<u8> {
 fn colours_of_obj_belong_to_positions_and_follow_them_into_groups() {
     let text = "v 0 0 0 1 1 1\nv 1 0 0 0 0 0\nv 1 1 0 1 0 0\nv 0 1 0 0 1 0\nvt 0 0\nvt 1 1\n\
         f 1/1 2/1 3/1\nusemtl x\nf 1/2 3/2 4/1\n";
-    let loaded = of_file("", ("a.obj", text.as_bytes())).unwrap();
+    let error = of_file("", ("a.obj", text.as_bytes())).unwrap_err();
+    assert!(error.contains("\"x\"; the colours of the vertices stand in"), "{error}");
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("a.obj"), text).unwrap();
+    fs::write(folder.path().join("s.toml"), format!("{HEAD}mesh = [{{ file = \"a.obj\" }}]\n")).unwrap();
+    let loaded = load(&folder.path().join("s.toml"), &LoadOptions::default()).unwrap();
     let [first, second] = &loaded.scene.meshes[..] else { panic!() };
     assert_near(vertices(first), &[[1.0; 3], [0.0; 3], [1.0, 0.0, 0.0]]);
     assert_near(vertices(second), &[[1.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]);

@@ -1,6 +1,6 @@
 //! Meshes of a plan in world coordinates, with the material of each part.
 
-use crate::attributes;
+use crate::attributes::{COLOUR, find};
 use crate::draft::DraftMesh;
 use crate::error::Warning;
 use crate::mesh::material_parts::split_by_material;
@@ -23,14 +23,16 @@ pub(crate) fn finish_mesh(plan: &MeshPlan, raw: RawMesh, remarks: &mut Vec<Warni
             vec![(plan.name.clone(), Appearance { material: *material, emission: None }, raw)]
         }
         MaterialPlan::ByName(appearances, other) => {
-            let has_colours = attributes::find(&raw.attributes, attributes::COLOUR).is_some();
+            let has_colours = find(&raw.attributes, COLOUR).is_some();
             let parts = split_by_material(raw);
-            remarks.extend(undefined_materials(
-                plan,
-                appearances,
-                has_colours,
-                parts.iter().map(|part| part.0.as_str()),
-            ));
+            // Faces without a material show the colours of their vertices.
+            let is_bare = |name: &&str| !(has_colours && name.is_empty());
+            let names = parts.iter().map(|part| part.0.as_str()).filter(is_bare);
+            let fallback = match has_colours {
+                true => "the colours of the vertices stand in",
+                false => "a grey of 0.5 stands in",
+            };
+            remarks.extend(undefined_materials(plan, appearances, names, fallback));
             let unknown = Appearance { material: *other, emission: None };
             let appearance = |name: &str| appearances.get(name).copied().unwrap_or(unknown);
             let named =
@@ -62,12 +64,12 @@ fn fill_uvs(uvs: &mut [Vec2]) -> bool {
     fills
 }
 
-/// Returns the warning about parts whose material is not defined.
+/// Returns the warning about parts whose material is not defined; `fallback` stands in.
 fn undefined_materials<'a>(
     plan: &MeshPlan,
     defined: &BTreeMap<String, Appearance>,
-    has_colours: bool,
     parts: impl Iterator<Item = &'a str>,
+    fallback: &str,
 ) -> Option<Warning> {
     let missing: Vec<&str> = parts.filter(|name| !defined.contains_key(*name)).collect();
     let named: Vec<&&str> = missing.iter().filter(|name| !name.is_empty()).collect();
@@ -78,14 +80,11 @@ fn undefined_materials<'a>(
     let mesh = &plan.name;
     let what = match (missing.is_empty(), listed.is_empty()) {
         (true, _) => return None,
-        // Colours of vertices are a material.
-        (false, true) if has_colours => return None,
         (false, true) if defined.is_empty() => "neither the mesh nor its file has a material".to_owned(),
         (false, true) => format!("faces of \"{mesh}\" have no material"),
         (false, false) => {
             format!("materials that \"{mesh}\" uses are not in its libraries: {}", listed.join(", "))
         }
     };
-    let fallback = if has_colours { "colours of vertices stand in" } else { "a grey of 0.5 stands in" };
     Some(Warning::new(plan.place.clone(), what, fallback))
 }
