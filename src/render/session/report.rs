@@ -95,20 +95,17 @@ pub(super) fn add_choice(
     let Notes { stats, remarks } = notes;
     let MethodChoice { paths_a_sample, rays_ratio, ahead, pilot_rays, seldom, reason, .. } = *choice;
     let (name, other) = match choice.method {
-        Method::Path(_) => (format!("paths (--method path --denoise --spp {spp})"), "cache"),
-        _ => ("cache".to_owned(), "paths"),
+        Method::Path(_) => (format!("path with denoising, {spp} samples per pixel"), "the cache"),
+        _ => ("cache".to_owned(), "path tracing"),
     };
     let why = match reason {
-        Reason::Work => format!(
-            "{other} would need about {ahead:.1} times the work for the same quality ({paths_a_sample:.1} paths of \
-             {rays_ratio:.1} times the rays replace a sample of the cache)"
-        ),
+        Reason::Work => format!("{other} would need about {ahead:.1}x the work for the same quality"),
         Reason::NoTime => format!(
-            "there is no time for either method, and the cheapest image by {other} would need about {ahead:.1} times the work"
+            "there is no time for either method, and the cheapest image by {other} would need about {ahead:.1}x the work"
         ),
         Reason::Missed => format!("{other} did not reach the error"),
     };
-    remarks.push(Remark::Note(format!("chose {name}: {why}")));
+    remarks.push(Remark::Note(format!("Method: {name} ({why})")));
     if is_measured && seldom > MAX_SELDOM {
         remarks.push(Remark::Warning(format!(
             "paths, with which the error is measured, seldom find {:.0} % of the light (from small emitters through glass \

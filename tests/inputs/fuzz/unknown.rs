@@ -88,30 +88,22 @@ fn channels_of_exr_besides_the_picture_are_no_trouble() {
     add("exr", 300);
 }
 
-/// Passes once the reader names unknown keywords.
 #[test]
-#[ignore = "the reader does not name all unknown statements yet"]
 fn statements_of_obj_are_told() {
     add("obj", 300);
 }
 
-/// Passes once the reader names unknown keywords.
 #[test]
-#[ignore = "the reader does not name all unknown statements yet"]
 fn statements_of_mtl_are_told() {
     add("mtl", 300);
 }
 
-/// Passes once the reader names unknown properties, extensions and attributes.
 #[test]
-#[ignore = "the reader does not name all unknown statements yet"]
 fn statements_of_gltf_are_told() {
     add("gltf", 300);
 }
 
-/// Passes once the reader names unknown properties, plugins and children.
 #[test]
-#[ignore = "the reader does not name all unknown statements yet"]
 fn statements_of_mitsuba_are_told() {
     add("xml", 300);
 }
