@@ -45,10 +45,14 @@ fn name(random: &mut Random) -> String {
     format!("zz{letters}")
 }
 
-/// Inserts a line before a line of a text, but for the first.
+/// Inserts a line before a line of a text, but for the first, and not into a continued line.
 fn with_line(text: &str, line: &str, random: &mut Random) -> String {
     let mut lines: Vec<&str> = text.lines().collect();
-    lines.insert(1 + random.below(lines.len()), line);
+    let mut at = 1 + random.below(lines.len());
+    while lines[at - 1].ends_with('\\') && at < lines.len() {
+        at += 1;
+    }
+    lines.insert(at, line);
     lines.join("\n") + "\n"
 }
 
@@ -204,6 +208,9 @@ fn to_lines(text: &str, random: &mut Random) -> Addition {
     Addition::told(with_line(text, &line, random), "a keyword")
 }
 
+/// Extensions that a warning names as a whole.
+const NAMED_AS_A_WHOLE: [&str; 3] = ["KHR_materials_unlit", "KHR_materials_iridescence", "EXT_x"];
+
 /// Adds to the JSON text of a model; files in other forms stay.
 fn to_gltf(bytes: &[u8], random: &mut Random) -> Addition {
     let Ok(mut model) = serde_json::from_slice::<serde_json::Value>(bytes) else {
@@ -222,8 +229,10 @@ fn to_gltf(bytes: &[u8], random: &mut Random) -> Addition {
         choice if path.ends_with("/attributes") => {
             // Names that begin with _ are those of applications.
             let is_own = choice < 2;
+            // Draco streams may hold attributes that a primitive does not name.
+            let is_of_draco = path.contains("draco");
             object.insert(format!("{}{}", if is_own { "_" } else { "" }, own.to_uppercase()), json!(0));
-            (!is_own, "an attribute")
+            (!is_own && !is_of_draco, "an attribute")
         }
         0 if !object.contains_key("extras") => {
             object.insert("extras".to_owned(), json!({ own: 1 }));
@@ -238,6 +247,9 @@ fn to_gltf(bytes: &[u8], random: &mut Random) -> Addition {
             (true, "a property")
         }
     };
+    // An extension that is named as a whole hides its properties.
+    let is_hidden = NAMED_AS_A_WHOLE.iter().any(|name| path.contains(name));
+    let is_told = is_told && !is_hidden;
     // Numbers of array elements say nothing about the kind.
     let place: String = path.chars().filter(|c| !c.is_ascii_digit()).collect();
     Addition { bytes: serde_json::to_vec(&model).unwrap(), kind: format!("{kind} in {place}"), is_told }
@@ -280,7 +292,8 @@ fn to_xml(text: &str, random: &mut Random) -> Addition {
         2 => (format!("<boolean name=\"{own}\" value=\"true\"/>"), true),
         3 => (format!("<string name=\"{own}\" value=\"x\"/>"), true),
         4 => (format!("<rgb name=\"{own}\" value=\"0.1, 0.2, 0.3\"/>"), true),
-        5 => (format!("<bsdf type=\"{own}\"/>"), true),
+        // A BSDF that no shape has changes nothing.
+        5 => (format!("<bsdf type=\"{own}\"/>"), parent != "<scene"),
         _ => (format!("<{own} name=\"a\" value=\"1\"/>"), true),
     };
     let kind =
