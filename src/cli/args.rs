@@ -107,7 +107,8 @@ pub struct RenderArgs {
     /// Options of all commands that render images.
     #[command(flatten)]
     pub picture: PictureArgs,
-    /// Use the camera of this frame of the camera path, counted from 1, instead of the still camera
+    /// Use the camera of this frame of the camera path, counted from 1, instead of the still camera; a glTF model takes
+    /// its pose of this frame, at 24 frames per second
     #[arg(short, long, value_name = "N", value_parser = counted)]
     pub frame: Option<NonZeroUsize>,
     /// The tone-mapped image.

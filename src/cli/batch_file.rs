@@ -15,6 +15,7 @@ use std::ffi::OsString;
 #[cfg(test)]
 use std::fs;
 use std::io;
+use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use toml::{Spanned, Table, Value};
 
@@ -174,7 +175,9 @@ impl JobEntry {
         arguments.extend(more.iter().map(OsString::from));
         self.arguments = arguments;
         self.reading = match self.command()? {
-            Command::Render(args) => args.picture.reading.options(),
+            Command::Render(args) => {
+                LoadOptions { frame: args.frame.map(NonZeroUsize::get), ..args.picture.reading.options() }
+            }
             Command::Walk(args) => args.picture.reading.options(),
             _ => LoadOptions::default(),
         };

@@ -79,7 +79,10 @@ impl RenderJob {
         }
         Ok(RenderJob {
             scene: args.scene,
-            reading: args.picture.reading.options(),
+            reading: LoadOptions {
+                frame: args.frame.map(NonZeroUsize::get),
+                ..args.picture.reading.options()
+            },
             files,
             resume: args.picture.resume,
             reproducible: args.picture.reproducible,

@@ -69,6 +69,7 @@ impl ReadingArgs {
         };
         LoadOptions {
             strict: self.strict,
+            frame: None,
             camera: self.camera,
             parameters: self.define,
             lighting: Lighting {

@@ -47,7 +47,7 @@ mod viewpoint;
 
 use error::Log;
 use finish::{divide, recentre, sanitize, wanted};
-use scene::{Cameras, Scene};
+use scene::{Cameras, MAX_FRAMES, Scene};
 use std::path::Path;
 
 pub use error::{Location, SceneError, Severity, Warning};
@@ -104,13 +104,21 @@ pub fn load(path: &Path, options: &LoadOptions) -> Result<Loaded, SceneError> {
     // Models for printing and from computer-aided design stand on z.
     let up = options.up.or((extension == "stl").then_some(UpAxis::Z));
     options.lighting.apply(&mut plan.contents, up.unwrap_or(UpAxis::Y), is_model, path, &mut log)?;
+    let posed_frames = plan.posed_frames.min(MAX_FRAMES);
     let (mut draft, hash) = plan.realise(&mut log)?;
-    let hash = options.hash(hash);
+    let hash = match options.frame.filter(|_| posed_frames > 0) {
+        Some(frame) => fnv1a(format!("{} {frame}", options.hash(hash)).as_bytes()),
+        None => options.hash(hash),
+    };
     wanted::choose(&mut draft, &mut log)?;
     options.viewpoint.apply(&mut draft, up, &Location::file(path))?;
     let (repairs, coordinates) = sanitize::sanitize(&mut draft, &mut log)?;
     divide::divide(&mut draft, &coordinates);
-    let (scene, cameras) = recentre::recentre(draft, &coordinates);
+    let (scene, mut cameras) = recentre::recentre(draft, &coordinates);
+    if cameras.path.is_empty() {
+        // The camera stands still while the model moves.
+        cameras.path = vec![cameras.still; posed_frames];
+    }
     if scene.is_dark() {
         let fallback = "the image will be black; add light with --env sky, or a lamp to the scene";
         log.warn(&Location::file(path), "the scene has no light that is modelled", fallback)?;

@@ -15,6 +15,8 @@ pub struct LoadOptions {
     pub camera: Option<String>,
     /// Names and values of a Mitsuba scene's `$parameters`. They replace the defaults of the scene.
     pub parameters: Vec<(String, String)>,
+    /// Frame, counted from 1, whose pose a glTF model takes; `None` for its pose at rest.
+    pub frame: Option<usize>,
     /// Light in addition to that of the scene, or in place of it.
     pub lighting: Lighting,
     /// Changes of the camera.
@@ -42,8 +44,9 @@ impl LoadOptions {
 
     /// Returns the hash of a scene with these options; `files` is the hash of its files.
     pub(crate) fn hash(&self, files: u64) -> u64 {
-        let LoadOptions { strict: _, camera, parameters, lighting, viewpoint, up } = self;
-        if *self == (LoadOptions { strict: self.strict, ..LoadOptions::default() }) {
+        let LoadOptions { strict, frame, camera, parameters, lighting, viewpoint, up } = self;
+        // The frame counts only if a model takes its pose.
+        if *self == (LoadOptions { strict: *strict, frame: *frame, ..LoadOptions::default() }) {
             return files;
         }
         if *lighting == Lighting::default() && *viewpoint == Viewpoint::default() && up.is_none() {

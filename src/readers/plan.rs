@@ -28,6 +28,8 @@ pub struct ScenePlan {
     pub shot: Shot,
     pub max_depth: Option<u32>,
     pub hides_emitters: bool,
+    /// Number of frames of the animation whose pose the plan has; 0 at rest.
+    pub posed_frames: usize,
     pub contents: Contents,
 }
 

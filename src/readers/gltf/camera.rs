@@ -102,7 +102,7 @@ impl Viewer<'_> {
                 let what = "the animation of anything but the camera is not modelled";
                 report.lacks(
                     what,
-                    "it stands still; `time` of a mesh in a TOML scene chooses its pose",
+                    "it stands still; --frame chooses its pose, or `time` of a mesh in a TOML scene",
                     name,
                 );
             }
@@ -141,7 +141,7 @@ impl Viewer<'_> {
                 let what = "the animation of anything but the camera is not modelled";
                 report.lacks(
                     what,
-                    "it stands still; `time` of a mesh in a TOML scene chooses its pose",
+                    "it stands still; --frame chooses its pose, or `time` of a mesh in a TOML scene",
                     name,
                 );
             }

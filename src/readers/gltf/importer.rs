@@ -38,6 +38,8 @@ pub(crate) struct ImportOptions {
     pub fps: f64,
     /// Time in seconds whose pose the model takes; `None` for its pose at rest.
     pub time: Option<f64>,
+    /// Frame of the first animation, counted from 1, whose pose the model takes if there is no time.
+    pub frame: Option<usize>,
     /// Name of the camera, or number from 1.
     pub camera: Option<String>,
 }
@@ -53,6 +55,7 @@ impl Default for ImportOptions {
             lumens_per_watt: None,
             fps: FRAMES_PER_SECOND,
             time: None,
+            frame: None,
             camera: None,
         }
     }

@@ -52,6 +52,8 @@ pub(crate) use importer::ImportOptions;
 /// Content of a model that is not part of the plan's contents.
 pub(crate) struct Imported {
     pub shot: Option<Shot>,
+    /// Number of frames of the first animation, if the options ask for one; else 0.
+    pub frames: usize,
     /// Files read, with the hash of the bytes of each.
     pub sources: Vec<(PathBuf, u64)>,
 }
@@ -59,7 +61,8 @@ pub(crate) struct Imported {
 /// Reads the model at `path` as a scene.
 pub(super) fn read(path: &Path, options: &LoadOptions, log: &mut Log) -> Result<ScenePlan, SceneError> {
     let mut contents = Contents::default();
-    let import_options = ImportOptions { camera: options.camera.clone(), ..ImportOptions::default() };
+    let import_options =
+        ImportOptions { camera: options.camera.clone(), frame: options.frame, ..ImportOptions::default() };
     let imported = import(path, &Location::file(path), &import_options, &mut contents, log)?;
     let shot = imported.shot.unwrap_or_else(|| {
         let forward = -framing::outlook(DVec3::Y);
@@ -73,6 +76,7 @@ pub(super) fn read(path: &Path, options: &LoadOptions, log: &mut Log) -> Result<
         shot,
         max_depth: None,
         hides_emitters: false,
+        posed_frames: imported.frames,
         contents,
     })
 }
@@ -90,7 +94,13 @@ pub fn import(
         let what = format!("time is {time}, and {} has no animation", path.display());
         return Err(from.wrong(what, "leave time out"));
     }
-    let pose = Pose::at(&document, options.time)?;
+    let span = match options.frame {
+        Some(_) => pose::span(&document)?,
+        None => None,
+    };
+    let of_frame = |frame: usize| span.map(|[start, _]| start + frame.saturating_sub(1) as f64 / options.fps);
+    let time = options.time.or(options.frame.and_then(of_frame));
+    let pose = Pose::at(&document, time)?;
     let tree = nodes::tree(&document, &options.selection, |index, node| pose.local(index, node))?;
     if !tree.iter().any(|placed| placed.selected) && !options.selection.only.is_empty() {
         return Err(from.undefined("node", &options.selection.only.join("\", \"")));
@@ -116,12 +126,13 @@ pub fn import(
     for name in document::unread_extensions(&document) {
         report.lacks(&format!("the extension {name} is not modelled"), "it is left out", "");
     }
-    let is_posed = options.time.is_some();
+    let is_posed = time.is_some();
     let viewer =
         Viewer { document: &document, tree: &tree, to_world: options.to_world, fps: options.fps, is_posed };
     let shot = viewer.shot(options.camera.as_deref(), &mut report)?;
     report.write(&document.place, log)?;
-    Ok(Imported { shot, sources: document.sources })
+    let frames = span.map_or(0, |[start, end]| ((end - start) * options.fps).round() as usize + 1);
+    Ok(Imported { shot, frames, sources: document.sources })
 }
 
 #[cfg(test)]

@@ -43,3 +43,11 @@ impl Pose {
         self.tracks.iter().filter(move |track| track.node == index)
     }
 }
+
+/// Returns the first and the last time of the first animation, in seconds; `None` without an animation.
+pub(super) fn span(document: &GltfFile) -> Result<Option<[f64; 2]>, SceneError> {
+    let Some(animation) = document.root.animations.first() else { return Ok(None) };
+    let tracks = animation::tracks(document, animation, |_| true)?;
+    let spans = tracks.iter().map(|track| track.span().map(f64::from));
+    Ok(spans.reduce(|[a, b], [start, end]| [a.min(start), b.max(end)]))
+}

@@ -79,6 +79,7 @@ impl SceneBuilder<'_> {
             lumens_per_watt: positive(text.lumens_per_watt, "lumens_per_watt")?.map(|lumens| lumens as f32),
             fps: positive(text.fps, "fps")?.unwrap_or(FRAMES_PER_SECOND),
             time: text.time.map(f64::from),
+            frame: None,
             camera: None,
         };
         let imported = gltf::import(path, place, &options, &mut self.contents, self.log)?;

@@ -69,6 +69,7 @@ pub(super) fn read(path: &Path, log: &mut Log) -> Result<ScenePlan, SceneError> 
         shot,
         max_depth,
         hides_emitters: scene.hide_emitters.unwrap_or(false),
+        posed_frames: 0,
         contents: builder.contents,
     })
 }

@@ -51,6 +51,7 @@ pub(crate) fn read(path: &Path, extension: &str, log: &mut Log) -> Result<SceneP
         sources: builder.sources,
         max_depth: None,
         hides_emitters: false,
+        posed_frames: 0,
         contents: builder.contents,
     })
 }

@@ -3,7 +3,7 @@
 use super::model::Model;
 use super::samples::{arm, face};
 use super::{bounds, load_beside, load_bytes};
-use crate::Loaded;
+use crate::{LoadOptions, Loaded, load};
 use glam::Vec3;
 use serde_json::{Value, json};
 
@@ -20,6 +20,11 @@ fn posed(model: &Model, time: f64) -> Result<Loaded, String> {
 fn positions(loaded: &Loaded, mesh: usize) -> Vec<Vec3> {
     let centre = loaded.scene.centre.as_vec3();
     loaded.scene.meshes[mesh].positions.iter().map(|p| *p + centre).collect()
+}
+
+/// Returns the positions of the first mesh.
+fn arrays(loaded: &Loaded) -> Vec<[f32; 3]> {
+    positions(loaded, 0).into_iter().map(Into::into).collect()
 }
 
 fn assert_close(found: &[Vec3], expected: &[[f32; 3]]) {
@@ -141,4 +146,24 @@ fn skins_and_targets_that_do_not_fit_are_errors() {
     let few = |m: &mut Model| m.json["accessors"][4]["count"] = json!(3);
     says(error(arm(), &few), "3 joints and 4 weights");
     says(error(face(), &|m| m.json["accessors"][4]["count"] = json!(3)), "morph target 0 has 3");
+}
+
+#[test]
+fn frames_of_an_animation_are_poses_of_models_without_a_scene_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("m.glb");
+    std::fs::write(&path, face().glb()).unwrap();
+    let at = |frame| load(&path, &LoadOptions { frame, ..LoadOptions::default() }).unwrap();
+    // The animation takes a second: frames 1 to 25, of which frame 7 is at a quarter.
+    let (rest, first, seventh) = (at(None), at(Some(1)), at(Some(7)));
+    assert_eq!((rest.cameras.path.len(), seventh.cameras.path.len()), (0, 25));
+    assert_close(&positions(&seventh, 0), &arrays(&posed(&face(), 0.25).unwrap()));
+    assert_close(&positions(&first, 0), &arrays(&posed(&face(), 0.0).unwrap()));
+    assert!(rest.hash != first.hash && first.hash != seventh.hash);
+    let fallbacks =
+        |loaded: &Loaded| loaded.warnings.iter().any(|warning| warning.fallback.contains("--frame"));
+    assert!(fallbacks(&rest) && !fallbacks(&seventh));
+    // A model without an animation has no frames.
+    std::fs::write(&path, arm().glb()).unwrap();
+    assert!(at(Some(7)).cameras.path.is_empty() && at(Some(7)).hash == at(None).hash);
 }
