@@ -93,9 +93,9 @@ pub enum Command {
 pub struct RenderArgs {
     /// Scene: glTF (.glb, .gltf), a mesh (.obj, .ply, .stl), native (.toml) or Mitsuba (.xml)
     pub scene: PathBuf,
-    /// Image to write: 32-bit float OpenEXR with metadata, and with variance if it is known, or a tone-mapped PNG
-    /// alone; `-` for standard output; `####` or `%04d` in the name stands for the number of `--frame` [default: the
-    /// scene's name with .exr, in the current folder]
+    /// Image to write: 32-bit float OpenEXR with metadata, or a tone-mapped PNG alone. `-` is standard output. `####`
+    /// or `%04d` in the name stands for the number of `--frame` [default: the scene's name with .exr, in the current
+    /// folder]
     #[arg(short, long, value_name = "FILE.exr|FILE.png|-")]
     pub output: Option<PathBuf>,
     /// Format of standard output
@@ -107,8 +107,8 @@ pub struct RenderArgs {
     /// Options of all commands that render images.
     #[command(flatten)]
     pub picture: PictureArgs,
-    /// Use the camera of this frame of the camera path, counted from 1, instead of the still camera; a glTF model takes
-    /// its pose of this frame, at 24 frames per second
+    /// Use the camera of this frame of the camera path, counted from 1. A glTF model takes its pose of this frame, at
+    /// 24 frames per second
     #[arg(short, long, value_name = "N", value_parser = counted)]
     pub frame: Option<NonZeroUsize>,
     /// The tone-mapped image.
@@ -134,8 +134,8 @@ pub struct PictureArgs {
     /// Width and height in pixels, instead of those in the scene: WxH; W or xH alone keeps the aspect ratio; N% scales
     #[arg(short, long, visible_alias = "size", value_name = "WxH|W|N%")]
     pub resolution: Option<Resolution>,
-    /// Render only this rectangle, in pixels from the top-left corner; with path and lightcuts its pixels equal those
-    /// of the full image, with other methods they differ by about 1 %
+    /// Render only this rectangle, in pixels from the top-left corner. With path and lightcuts its pixels equal those
+    /// of the full image. With other methods they differ by about 1 %
     #[arg(long, value_name = "X,Y,W,H")]
     pub crop: Option<Crop>,
     /// Additional layers to write, about the visible surfaces; mirrors and glass show the surfaces behind them
@@ -191,7 +191,7 @@ pub struct WalkArgs {
     /// Frames to render, counted from 1: 7, 1-10, 1-100x5 (every fifth), or a list of such ranges [default: all]
     #[arg(short, long, value_name = "LIST")]
     pub frames: Option<FrameList>,
-    /// Render the frames in chunks of N, which begin without records: separate runs, on any machines, may render one
+    /// Render the frames in chunks of N, which begin without records. Separate runs, on any machines, may render one
     /// chunk each and give the same images [default: one chunk]
     #[arg(long, value_name = "N", value_parser = counted)]
     pub chunk: Option<NonZeroUsize>,
@@ -206,8 +206,8 @@ pub struct WalkArgs {
     /// smaller errors, longer frames
     #[arg(long)]
     pub no_reprojection: bool,
-    /// Quantisation scale of the visibility model that allows differences between records where the previous frame has
-    /// contrasts: 4 allows about 2 % on plain surfaces, 0 allows 2 % everywhere
+    /// Quantisation scale of the visibility model. The model allows differences between records where the previous
+    /// frame has contrasts: 4 allows about 2 % on plain surfaces, 0 allows 2 % everywhere
     #[arg(long, value_name = "SCALE", value_parser = q_scale, default_value_t = Q_SCALE)]
     pub q_scale: f32,
     /// The method and its settings.

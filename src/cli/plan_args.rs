@@ -43,12 +43,12 @@ pub struct PlanArgs {
     /// Named settings; settings given on the command line are not changed
     #[arg(long, value_enum, conflicts_with_all = ["time", "error"])]
     pub quality: Option<Quality>,
-    /// Choose settings so that the run takes about this long, from start to written files without --verify (10s, 500ms,
-    /// 2m); settings given on the command line are not changed. The settings depend on the machine and are printed
+    /// Choose settings so that the run takes about this long (10s, 500ms, 2m), from start to written files without
+    /// --verify. Settings given on the command line are not changed. The settings depend on the machine and are printed
     #[arg(long, value_name = "TIME", value_parser = parse_time, allow_hyphen_values = true, conflicts_with = "error")]
     pub time: Option<f64>,
-    /// Find the cheapest settings whose measured relative RMS error is at most this (like 2%) with 95 % confidence;
-    /// settings given on the command line are not changed. --verify sets the number of measured pixels [default: 1000]
+    /// Find the cheapest settings whose measured relative RMS error is at most this (like 2%) with 95 % confidence.
+    /// Settings given on the command line are not changed. --verify sets the number of measured pixels [default: 1000]
     #[arg(long, value_name = "PERCENT", value_parser = parse_percent, allow_hyphen_values = true)]
     pub error: Option<f64>,
 }

@@ -8,9 +8,9 @@ use readers::{EnvironmentChoice, Lighting, LoadOptions, UpAxis, Viewpoint};
 #[derive(Clone, Debug, Default, Args)]
 #[command(next_help_heading = "Scene, light and camera")]
 pub struct ReadingArgs {
-    /// Environment in place of the scene's own: a latitude-longitude image (EXR, HDR), a colour (0.5, R,G,B or
-    /// #rrggbb), or a clear sky with its sun (sky, or sky,AZIMUTH,ELEVATION in degrees; azimuth 0 is the front, 90 the
-    /// right)
+    /// Environment in place of the scene's own. A latitude-longitude image (EXR, HDR), or a colour (0.5, R,G,B or
+    /// #rrggbb). `sky` is a clear sky with its sun, `sky,AZIMUTH,ELEVATION` places the sun in degrees. Azimuth 0 is the
+    /// front, 90 the right
     #[arg(long, value_name = "FILE|COLOUR|sky")]
     env: Option<EnvironmentChoice>,
     /// Rotation of --env about the upward axis in degrees, counter-clockwise seen from above

@@ -106,6 +106,11 @@ pub fn load(path: &Path, options: &LoadOptions) -> Result<Loaded, SceneError> {
     options.lighting.apply(&mut plan.contents, up.unwrap_or(UpAxis::Y), is_model, path, &mut log)?;
     let posed_frames = plan.posed_frames.min(MAX_FRAMES);
     let (mut draft, hash) = plan.realise(&mut log)?;
+    // A mesh file is opened after its material libraries, and is the main file.
+    let sources = &mut draft.scene.sources;
+    if let Some(at) = sources.iter().position(|source| source == path) {
+        sources[..=at].rotate_right(1);
+    }
     let hash = match options.frame.filter(|_| posed_frames > 0) {
         Some(frame) => fnv1a(format!("{} {frame}", options.hash(hash)).as_bytes()),
         None => options.hash(hash),

@@ -54,7 +54,10 @@ impl Textures {
         }
     }
 
-    /// Returns the colour of an attribute texture; see [`Textures::lookup`].
+    /// Returns the colour of an attribute texture; see [`Textures::lookup`]. Few scenes have one, so look-ups of images
+    /// stay free of this code.
+    #[cold]
+    #[inline(never)]
     pub(super) fn lookup_attribute(
         &self,
         id: TextureId,

@@ -72,8 +72,8 @@ settings! {
         ];
         /// Number of probe rays per record that find the edges of occluders, in whole rings of sixteen.
         probe_rays: u32 = 128 => [.heading(PAPER).range(1.0, 4096.0).scaled(&UP)];
-        /// Radius of footprints relative to the distance of the geometry that sends or blocks light (the paper's a),
-        /// for direct and indirect light.
+        /// Radius of footprints, for direct and indirect light (the paper's a). It is relative to the distance of the
+        /// geometry that sends or blocks light.
         accuracy: [f32; 2] = [0.3, 0.2] => [
             .positive().placeholder("DIRECT,INDIRECT").scaled(&DOWN).parts(&["direct", "indirect"]).with(RECORDS)
         ];
