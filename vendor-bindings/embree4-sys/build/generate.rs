@@ -47,6 +47,8 @@ pub fn write_bindings() -> Result<(), String> {
         builder = builder.allowlist_type(ty);
     }
     let bindings = builder.generate().map_err(|e| format!("bindgen failed on {}: {e}", header.display()))?;
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/bindings.rs");
+    let package =
+        std::env::var_os("CARGO_MANIFEST_DIR").ok_or("CARGO_MANIFEST_DIR is not set: run by cargo")?;
+    let path = Path::new(&package).join("src/bindings.rs");
     bindings.write_to_file(&path).map_err(|e| format!("cannot write {}: {e}", path.display()))
 }

@@ -95,7 +95,8 @@ fn headers_are_too_old(dir: &Path) -> bool {
 }
 
 fn from_repository() -> Option<Library> {
-    let dir = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../.embree");
+    // The folder at run time: checkouts that share a target folder share this program.
+    let dir = Path::new(&env::var_os("CARGO_MANIFEST_DIR")?).join("../../.embree");
     if let Ok(root) = dir.join("..").canonicalize() {
         println!("cargo::rerun-if-changed={}", root.join(".embree").display());
     }
