@@ -44,7 +44,7 @@ fn run(context: &Context) -> Vec<Table> {
             black_box(bsdf.bound(wo, &bound));
         }),
     ];
-    let packets = Packets::new(&directions);
+    let packets = DirectionPackets::new(&directions);
     let (scene, materials, pair) = (&scene, &materials, &pair);
     let mut cases = Vec::new();
     for (what, call) in calls {
@@ -80,11 +80,15 @@ fn run(context: &Context) -> Vec<Table> {
 }
 
 /// Returns the cases of sixteen directions at once, each after that of one at a time.
-fn cases_of_packets<'a>(scene: &'a Scene, materials: &'a Materials, packets: &'a Packets) -> Vec<Case<'a>> {
+fn cases_of_packets<'a>(
+    scene: &'a Scene,
+    materials: &'a Materials,
+    packets: &'a DirectionPackets,
+) -> Vec<Case<'a>> {
     let mut cases = Vec::new();
     for (i, material) in scene.materials.iter().enumerate() {
         let bsdf = materials.at(MaterialId(i as u32), Vec2::ZERO);
-        let mut case = |labels: [&str; 3], against, work: fn(&Bsdf, &Packets)| {
+        let mut case = |labels: [&str; 3], against, work: fn(&Bsdf, &DirectionPackets)| {
             cases.push(Case::new(&labels, against, DIRECTIONS as f64, move || work(&bsdf, packets)));
         };
         let first = 4 * i;
@@ -117,17 +121,17 @@ fn cases_of_packets<'a>(scene: &'a Scene, materials: &'a Materials, packets: &'a
 }
 
 /// Directions in packets, each with a direction of view.
-struct Packets {
+struct DirectionPackets {
     wo: Vec<Vec3>,
     wi: Vec<Vec3x16>,
     /// Numbers from 0 to 1.
     u: Vec<Vec2x16>,
 }
 
-impl Packets {
+impl DirectionPackets {
     /// Packs directions.
-    fn new(directions: &[Vec3]) -> Packets {
-        let mut packets = Packets { wo: Vec::new(), wi: Vec::new(), u: Vec::new() };
+    fn new(directions: &[Vec3]) -> DirectionPackets {
+        let mut packets = DirectionPackets { wo: Vec::new(), wi: Vec::new(), u: Vec::new() };
         for (i, packet) in directions.chunks_exact(LANES).enumerate() {
             let (mut wi, mut u) = (Vec3x16::ZERO, Vec2x16::default());
             for (lane, v) in packet.iter().enumerate() {

@@ -105,7 +105,7 @@ struct Pilot {
 }
 
 /// Answer for a scene.
-struct Scene {
+struct SceneAnswer {
     answer: Answer,
     budgets: Vec<Budget>,
     pilot_seconds: f64,
@@ -125,7 +125,7 @@ fn run(study: &Study, files: &[PathBuf]) -> Result<Results, StudyError> {
 }
 
 /// Returns the answer for a scene; `None` if there is nothing to choose.
-fn scene(study: &Study, subject: Subject) -> Result<Option<Scene>, StudyError> {
+fn scene(study: &Study, subject: Subject) -> Result<Option<SceneAnswer>, StudyError> {
     let Some(pilot) = Pilot::new(study, &subject) else {
         (study.say)(&format!("{}: there is no light, and nothing to choose", subject.name));
         return if study.control.is_cancelled() { Err(StudyError::Interrupted) } else { Ok(None) };
@@ -136,7 +136,7 @@ fn scene(study: &Study, subject: Subject) -> Result<Option<Scene>, StudyError> {
     let (paths, cache) = answer.shots.split_at(SPP.len());
     let budgets = cache.iter().map(|shot| Budget::new(shot, paths, &pilot.chooser)).collect();
     let choice = pilot.chooser.on_film(&Method::default());
-    Ok(Some(Scene { answer, budgets, pilot_seconds: pilot.seconds, choice }))
+    Ok(Some(SceneAnswer { answer, budgets, pilot_seconds: pilot.seconds, choice }))
 }
 
 impl Pilot {
@@ -217,8 +217,8 @@ fn total<'b>(results: &mut Results, budgets: impl Iterator<Item = &'b Budget>) {
     ));
 }
 
-fn section(results: &mut Results, scene: &Scene) {
-    let Scene { answer, budgets, pilot_seconds, choice } = scene;
+fn section(results: &mut Results, scene: &SceneAnswer) {
+    let SceneAnswer { answer, budgets, pilot_seconds, choice } = scene;
     let pilot = json!({
         "pilot_seconds": pilot_seconds,
         "pilot_rays": choice.pilot_rays,

@@ -81,7 +81,7 @@ const MAX_RUNS: f64 = 1e6;
 
 /// Samples of a case.
 #[derive(Clone, Default)]
-struct Samples {
+struct CaseSamples {
     rates: Vec<f64>,
     /// True if a sample was too short to be timed well.
     short: bool,
@@ -118,14 +118,14 @@ impl Experiment<'_> {
         }
     }
 
-    fn samples(&mut self, settings: &Settings) -> Vec<Samples> {
+    fn samples(&mut self, settings: &Settings) -> Vec<CaseSamples> {
         let (clock, scale) = (self.clock, self.scale);
         let runs = |case: &mut Case| {
             case.time(1, clock);
             (settings.seconds / case.time(1, clock).max(1e-9)).clamp(1.0, MAX_RUNS) as usize
         };
         let runs: Vec<usize> = self.cases.iter_mut().map(runs).collect();
-        let mut samples = vec![Samples::default(); self.cases.len()];
+        let mut samples = vec![CaseSamples::default(); self.cases.len()];
         for round in 0..settings.repeats {
             for place in 0..self.cases.len() {
                 let i = if round % 2 == 0 { place } else { self.cases.len() - 1 - place };

@@ -39,7 +39,7 @@ pub struct ReadingArgs {
     elevation: Option<f64>,
     /// Upward axis for the options above [default: y; z for STL]
     #[arg(long, value_enum, value_name = "AXIS")]
-    up: Option<Axis>,
+    up: Option<UpAxisName>,
     /// Value of `$NAME` in a Mitsuba scene, which replaces its `<default>`; may be repeated
     #[arg(short = 'D', long = "define", value_name = "NAME=VALUE", value_parser = definition)]
     define: Vec<(String, String)>,
@@ -50,7 +50,7 @@ pub struct ReadingArgs {
 
 /// Upward axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum Axis {
+enum UpAxisName {
     /// The front of the scene is +z
     Y,
     /// The front of the scene is -y
@@ -79,8 +79,8 @@ impl ReadingArgs {
             },
             viewpoint: Viewpoint { from: self.look_from, at: self.look_at, fov: self.fov, around },
             up: self.up.map(|axis| match axis {
-                Axis::Y => UpAxis::Y,
-                Axis::Z => UpAxis::Z,
+                UpAxisName::Y => UpAxis::Y,
+                UpAxisName::Z => UpAxis::Z,
             }),
         }
     }

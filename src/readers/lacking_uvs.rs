@@ -10,7 +10,7 @@ use scene::{Relief, TextureId};
 const MAX_LISTED: usize = 4;
 
 /// Meshes of one description that lack texture coordinates.
-struct Finding<'a> {
+struct MeshesWithoutUvs<'a> {
     place: &'a Location,
     /// True if Mitsuba, too, takes barycentric coordinates.
     is_modelled: bool,
@@ -25,7 +25,7 @@ pub(crate) fn report(
     images: &[Option<DecodedImage>],
     log: &mut Log,
 ) -> Result<(), SceneError> {
-    let mut findings: Vec<Finding> = Vec::new();
+    let mut findings: Vec<MeshesWithoutUvs> = Vec::new();
     let needs = |plan: &MeshPlan, mesh: &DraftMesh| {
         let textures = textures(contents, plan, mesh);
         textures.into_iter().any(|texture| varies(contents, images, texture))
@@ -36,11 +36,15 @@ pub(crate) fn report(
         for mesh in lacking.filter(|mesh| needs(plan, mesh)) {
             match findings.iter_mut().find(|f| *f.place == plan.place && f.is_modelled == is_modelled) {
                 Some(finding) => finding.names.push(&mesh.name),
-                None => findings.push(Finding { place: &plan.place, is_modelled, names: vec![&mesh.name] }),
+                None => findings.push(MeshesWithoutUvs {
+                    place: &plan.place,
+                    is_modelled,
+                    names: vec![&mesh.name],
+                }),
             }
         }
     }
-    for Finding { place, is_modelled, mut names } in findings {
+    for MeshesWithoutUvs { place, is_modelled, mut names } in findings {
         names.dedup();
         let mut listed: Vec<String> =
             names.iter().take(MAX_LISTED).map(|name| format!("\"{name}\"")).collect();

@@ -32,7 +32,7 @@ enum Task<'a> {
     Environment(&'a Location),
 }
 
-enum Done {
+enum Realised {
     /// Meshes of a plan, and warnings about them.
     Meshes(usize, Vec<DraftMesh>, Vec<Warning>),
     Texture(usize, DecodedImage),
@@ -42,7 +42,7 @@ enum Done {
 }
 
 /// Hash of a file's bytes, if it was read, and its content.
-type UsedFile = (Option<u64>, Vec<Done>);
+type UsedFile = (Option<u64>, Vec<Realised>);
 
 /// Content of all files of a plan.
 struct ReadFiles {
@@ -132,12 +132,12 @@ impl ScenePlan {
 }
 
 impl ReadFiles {
-    fn take(&mut self, done: Done) {
+    fn take(&mut self, done: Realised) {
         match done {
-            Done::Meshes(i, meshes, remarks) => (self.meshes[i], self.remarks[i]) = (meshes, remarks),
-            Done::Texture(i, image) => self.images[i] = Some(image),
-            Done::MissingTexture(i, warning) => _ = self.missing.insert(i, warning),
-            Done::Environment(image) => self.environment = Some(image),
+            Realised::Meshes(i, meshes, remarks) => (self.meshes[i], self.remarks[i]) = (meshes, remarks),
+            Realised::Texture(i, image) => self.images[i] = Some(image),
+            Realised::MissingTexture(i, warning) => _ = self.missing.insert(i, warning),
+            Realised::Environment(image) => self.environment = Some(image),
         }
     }
 }
@@ -261,9 +261,10 @@ fn use_file(path: &Path, tasks: &[Task], budget: &TriangleBudget) -> Result<Used
         Err(error) if tasks.iter().all(is_texture) => {
             let missing = stand_in::warning(error, from)?;
             let of_task = |task: &Task| match task {
-                Task::Texture(i, plan, _) => {
-                    Some(Done::MissingTexture(*i, Warning { place: plan.place.clone(), ..missing.clone() }))
-                }
+                Task::Texture(i, plan, _) => Some(Realised::MissingTexture(
+                    *i,
+                    Warning { place: plan.place.clone(), ..missing.clone() },
+                )),
                 Task::Mesh(..) | Task::Environment(_) => None,
             };
             return Ok((None, tasks.iter().filter_map(of_task).collect()));
@@ -271,12 +272,12 @@ fn use_file(path: &Path, tasks: &[Task], budget: &TriangleBudget) -> Result<Used
         Err(error) => return Err(error),
     };
     let hash = Some(fnv1a(&bytes));
-    let done: Vec<Result<Done, SceneError>> =
+    let done: Vec<Result<Realised, SceneError>> =
         tasks.par_iter().map(|task| perform(task, &bytes, path, budget)).collect();
     Ok((hash, done.into_iter().collect::<Result<_, _>>()?))
 }
 
-fn perform(task: &Task, bytes: &[u8], path: &Path, budget: &TriangleBudget) -> Result<Done, SceneError> {
+fn perform(task: &Task, bytes: &[u8], path: &Path, budget: &TriangleBudget) -> Result<Realised, SceneError> {
     Ok(match task {
         Task::Mesh(i, plan) => {
             let mut remarks = Vec::new();
@@ -292,11 +293,11 @@ fn perform(task: &Task, bytes: &[u8], path: &Path, budget: &TriangleBudget) -> R
             };
             budget.take(raw.triangles.len(), &plan.place)?;
             let meshes = finish_mesh(plan, raw, &mut remarks);
-            Done::Meshes(*i, meshes, remarks)
+            Realised::Meshes(*i, meshes, remarks)
         }
         Task::Texture(i, plan, channel) => match decode::decode(bytes, *channel, path, &plan.place) {
-            Ok(image) => Done::Texture(*i, image),
-            Err(error) => Done::MissingTexture(*i, stand_in::warning(error, &plan.place)?),
+            Ok(image) => Realised::Texture(*i, image),
+            Err(error) => Realised::MissingTexture(*i, stand_in::warning(error, &plan.place)?),
         },
         Task::Environment(place) => {
             let image = decode::decode(bytes, Channel::Colour, path, place)?;
@@ -305,7 +306,7 @@ fn perform(task: &Task, bytes: &[u8], path: &Path, budget: &TriangleBudget) -> R
                 let what = format!("{}: light of its {width} x {height} texels takes {lack}", path.display());
                 return Err(place.wrong(what, decode::SMALLER));
             }
-            Done::Environment(image)
+            Realised::Environment(image)
         }
     })
 }

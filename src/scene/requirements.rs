@@ -4,7 +4,7 @@
 
 use super::material::{Lobe, Material};
 use super::parameter::{Reflectance, Roughness};
-use super::{DeltaLight, Environment, Scene};
+use super::{DeltaLight, Environment, Mesh, Scene};
 use glam::DVec3;
 use serde::Serialize;
 use std::fmt;
@@ -116,11 +116,7 @@ impl Requirements {
             let area = area_and_bounds(mesh, &mut low, &mut high);
             r.area += area;
             r.triangles += mesh.triangles.len();
-            r.memory.geometry += 2 * 12 * (mesh.positions.len() + mesh.triangles.len())
-                + 12 * mesh.normals.len()
-                + 8 * mesh.uvs.len()
-                + 16 * mesh.tangents.len()
-                + 12 * mesh.attributes.iter().map(|attribute| attribute.values.all().len()).sum::<usize>();
+            r.memory.geometry += geometry_bytes(mesh);
             r.attributes += mesh.attributes.len();
             if let Some(emission) = mesh.emission {
                 r.emitting_triangles += mesh.triangles.len();
@@ -152,17 +148,7 @@ impl Requirements {
         if r.triangles > 0 {
             r.diagonal = (high - low).length() * scene.unit();
         }
-        for light in &scene.lights {
-            r.lights += 1;
-            match light {
-                DeltaLight::Point { .. } | DeltaLight::Spot { .. } | DeltaLight::Projector { .. } => {
-                    r.trees.omni = true;
-                }
-                DeltaLight::Directional { .. } => r.trees.directional = true,
-            }
-        }
-        r.trees.environment = scene.environment.is_some() || !scene.discs.is_empty();
-        r.lights += usize::from(r.trees.environment);
+        r.count_lights(scene);
         r.trees.indirect = r.lights > 0 && reflects && scene.max_depth.is_none_or(|depth| depth > 2);
         r.memory.hierarchy = BVH_BYTES_PER_TRIANGLE * r.triangles;
         r.memory.pictures = scene.textures.iter().map(|t| t.texels.bytes() / 3 * 4).sum();
@@ -170,6 +156,20 @@ impl Requirements {
             r.memory.pictures += ENVIRONMENT_TEXEL_BYTES as usize * map.radiance.len();
         }
         r
+    }
+
+    /// Counts the lights that are not meshes.
+    fn count_lights(&mut self, scene: &Scene) {
+        for light in &scene.lights {
+            match light {
+                DeltaLight::Point { .. } | DeltaLight::Spot { .. } | DeltaLight::Projector { .. } => {
+                    self.trees.omni = true;
+                }
+                DeltaLight::Directional { .. } => self.trees.directional = true,
+            }
+        }
+        self.trees.environment = scene.environment.is_some() || !scene.discs.is_empty();
+        self.lights += scene.lights.len() + usize::from(self.trees.environment);
     }
 
     fn count(&mut self, material: &Material, scene: &Scene) {
@@ -212,7 +212,7 @@ fn is_glass(material: &Material) -> bool {
     material.parts().any(|part| part.lobes.iter().any(of_glass))
 }
 
-fn area_and_bounds(mesh: &super::Mesh, low: &mut DVec3, high: &mut DVec3) -> f64 {
+fn area_and_bounds(mesh: &Mesh, low: &mut DVec3, high: &mut DVec3) -> f64 {
     let mut double_area = 0.0;
     for t in 0..mesh.triangles.len() {
         let [a, b, c] = mesh.corners(t).map(|p| p.as_dvec3());
@@ -223,17 +223,27 @@ fn area_and_bounds(mesh: &super::Mesh, low: &mut DVec3, high: &mut DVec3) -> f64
     0.5 * double_area
 }
 
+/// Returns the bytes of a mesh in the scene, and of its copy for the hierarchy.
+fn geometry_bytes(mesh: &Mesh) -> usize {
+    2 * 12 * (mesh.positions.len() + mesh.triangles.len())
+        + 12 * mesh.normals.len()
+        + 8 * mesh.uvs.len()
+        + 16 * mesh.tangents.len()
+        + 12 * mesh.attributes.iter().map(|attribute| attribute.values.all().len()).sum::<usize>()
+}
+
+/// Returns a list of texts, or "none".
+fn list(texts: impl Iterator<Item = String>) -> String {
+    let texts: Vec<String> = texts.collect();
+    if texts.is_empty() { "none".into() } else { texts.join(", ") }
+}
+
 impl fmt::Display for Requirements {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         let listed = |pairs: &[(usize, &str)]| {
-            let given: Vec<String> =
-                pairs.iter().filter(|p| p.0 > 0).map(|(n, what)| format!("{n} {what}")).collect();
-            if given.is_empty() { "none".into() } else { given.join(", ") }
+            list(pairs.iter().filter(|p| p.0 > 0).map(|(n, what)| format!("{n} {what}")))
         };
-        let named = |pairs: &[(bool, &str)]| {
-            let given: Vec<&str> = pairs.iter().filter(|p| p.0).map(|p| p.1).collect();
-            if given.is_empty() { "none".into() } else { given.join(", ") }
-        };
+        let named = |pairs: &[(bool, &str)]| list(pairs.iter().filter(|p| p.0).map(|p| p.1.to_owned()));
         let (m, t) = (&self.materials, &self.trees);
         let materials = listed(&[
             (m.diffuse, "diffuse"),

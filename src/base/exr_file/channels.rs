@@ -76,7 +76,7 @@ impl fmt::Display for NoPicture {
 }
 
 /// Channels of one layer that have a colour or a luminance.
-struct Group<'a> {
+struct LayerChannels<'a> {
     /// Last segment of the layer's name; empty if there is no layer.
     layer: &'a str,
     place: PictureChannels,
@@ -89,15 +89,16 @@ struct Group<'a> {
 pub fn picture_channels(parts: &[PartNames]) -> Result<PictureChannels, NoPicture> {
     let several = parts.len() > 1;
     let flat = parts.iter().enumerate().filter(|(_, part)| !part.is_deep);
-    let groups: Vec<Group> = flat.flat_map(|(index, part)| groups(index, part, several)).collect();
-    let (luma, colours): (Vec<&Group>, Vec<&Group>) =
+    let groups: Vec<LayerChannels> = flat.flat_map(|(index, part)| groups(index, part, several)).collect();
+    let (luma, colours): (Vec<&LayerChannels>, Vec<&LayerChannels>) =
         groups.iter().partition(|group| group.place.model == ColourModel::Luma);
-    let called = |of: &[&Group], name: &str| -> Vec<PictureChannels> {
+    let called = |of: &[&LayerChannels], name: &str| -> Vec<PictureChannels> {
         let own = of.iter().filter(|group| group.layer.eq_ignore_ascii_case(name));
         own.map(|group| group.place.clone()).collect()
     };
-    let of_picture_layers = |of: &[&Group]| PICTURE_LAYERS.iter().map(|name| called(of, name)).collect();
-    let all = |of: &[&Group]| of.iter().map(|group| group.place.clone()).collect::<Vec<_>>();
+    let of_picture_layers =
+        |of: &[&LayerChannels]| PICTURE_LAYERS.iter().map(|name| called(of, name)).collect();
+    let all = |of: &[&LayerChannels]| of.iter().map(|group| group.place.clone()).collect::<Vec<_>>();
     let by_layer: [Vec<Vec<PictureChannels>>; 2] = [of_picture_layers(&colours), of_picture_layers(&luma)];
     let [named_colours, named_luma] = by_layer;
     let steps =
@@ -127,7 +128,7 @@ fn without_part<'a>(channel: &'a str, part: &str) -> &'a str {
 }
 
 /// Returns the layers of a part that have a colour or a luminance, in the order of their first channels.
-fn groups(index: usize, part: &PartNames, several: bool) -> Vec<Group<'_>> {
+fn groups(index: usize, part: &PartNames, several: bool) -> Vec<LayerChannels<'_>> {
     let mut layers: Vec<(&str, Vec<(usize, &str)>)> = Vec::new();
     for (i, channel) in part.channels.iter().enumerate() {
         let name = without_part(channel, &part.name);
@@ -143,7 +144,7 @@ fn groups(index: usize, part: &PartNames, several: bool) -> Vec<Group<'_>> {
         let Some((channels, model)) = colour(&components) else { continue };
         let layer = if layer.is_empty() { of_part } else { layer };
         let layer = layer.rsplit('.').next().unwrap_or(layer);
-        found.push(Group { layer, place: PictureChannels { part: index, channels, model } });
+        found.push(LayerChannels { layer, place: PictureChannels { part: index, channels, model } });
     }
     found
 }

@@ -56,7 +56,7 @@ pub struct TileRays {
 }
 
 /// Hits of a packet of eye rays.
-struct Hit<'a> {
+struct EyeHits<'a> {
     found: u16,
     surfaces: &'a Surfaces16,
     bsdfs: &'a Bsdfs16<'a>,
@@ -140,7 +140,7 @@ impl TileRays {
         }
         let at = Receivers16 { position: &surfaces.position, normal: &normal, learned: None };
         let alone = bsdfs.lambertian() & world.emitters.look_small(at);
-        let hit = Hit { found, surfaces: &surfaces, bsdfs: &bsdfs, samplers: &samplers, alone };
+        let hit = EyeHits { found, surfaces: &surfaces, bsdfs: &bsdfs, samplers: &samplers, alone };
         self.add_shadow_rays(source, &hit, at);
         self.add_bsdf_rays(world, &hit);
         if self.eye.full.len().is_multiple_of(SCATTERED) {
@@ -149,7 +149,7 @@ impl TileRays {
     }
 
     /// Adds the segments to lights that are sampled at the hits.
-    fn add_shadow_rays(&mut self, source: &Source, hit: &Hit, at: Receivers16) {
+    fn add_shadow_rays(&mut self, source: &Source, hit: &EyeHits, at: Receivers16) {
         let lit = hit.found & hit.bsdfs.smooth();
         for sample in 0..source.light_samples {
             let index: U32x16 =
@@ -180,7 +180,7 @@ impl TileRays {
     }
 
     /// Adds the rays that continue from the hits. Those that can find only the environment are shadow rays.
-    fn add_bsdf_rays(&mut self, world: &World, hit: &Hit) {
+    fn add_bsdf_rays(&mut self, world: &World, hit: &EyeHits) {
         let bends_light = world.specular.bends_light();
         let wanted = if bends_light { hit.found } else { hit.found & !hit.alone };
         if wanted == 0 {
@@ -212,7 +212,7 @@ impl TileRays {
     }
 
     /// Adds a ray from every hit, with the distribution of a diffuse surface.
-    fn add_scattered_rays(&mut self, hit: &Hit) {
+    fn add_scattered_rays(&mut self, hit: &EyeHits) {
         let places = hit.samplers.point(DIRECTION);
         for i in lanes_in(hit.found) {
             let mut direction = cosine_hemisphere(places.get(i));

@@ -130,13 +130,7 @@ impl Importer<'_> {
             return Ok(material);
         }
         let pbr = &source.pbr_metallic_roughness;
-        let base_color = self.base_colour(source, name)?;
-        let base_color = match colours {
-            VertexColours::None => base_color,
-            VertexColours::Opaque | VertexColours::WithAlpha => {
-                self.contents.times_attribute(base_color, VERTEX_COLOUR)
-            }
-        };
+        let base_color = self.base_colour(source, colours, name)?;
         let roughness =
             self.share(pbr.roughness_factor.0, pbr.metallic_roughness_texture.as_ref(), GREEN, name)?;
         let metallic =
@@ -261,7 +255,12 @@ impl Importer<'_> {
         })
     }
 
-    fn base_colour(&mut self, source: &Source, name: &str) -> Result<Reflectance, SceneError> {
+    fn base_colour(
+        &mut self,
+        source: &Source,
+        colours: VertexColours,
+        name: &str,
+    ) -> Result<Reflectance, SceneError> {
         let base = &source.pbr_metallic_roughness;
         let [r, g, b, _] = base.base_color_factor.0;
         let scale = Rgb::new(r, g, b);
@@ -269,9 +268,15 @@ impl Importer<'_> {
             Some(info) => self.texture(&TextureUse::of(info), Channel::Colour, name)?,
             None => None,
         };
-        Ok(match texture {
+        let base_colour = match texture {
             Some(texture) => Reflectance::Textured { texture, scale },
             None => Reflectance::Constant(scale),
+        };
+        Ok(match colours {
+            VertexColours::None => base_colour,
+            VertexColours::Opaque | VertexColours::WithAlpha => {
+                self.contents.times_attribute(base_colour, VERTEX_COLOUR)
+            }
         })
     }
 

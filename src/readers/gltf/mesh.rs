@@ -37,14 +37,11 @@ pub(super) fn read(
         return Err(document.wrong(format!("{what} has no positions")));
     };
     let positions = document.vectors::<3>(positions, what)?;
-    let normals = match attribute(Semantic::Normals) {
-        Some(normals) => document.vectors::<3>(normals, what)?,
-        None => Vec::new(),
-    };
-    let uvs = match attribute(Semantic::TexCoords(uv_set)) {
-        Some(uvs) => document.vectors::<2>(uvs, what)?,
-        None => Vec::new(),
-    };
+    let normals = attribute(Semantic::Normals);
+    let normals =
+        normals.map(|normals| document.vectors::<3>(normals, what)).transpose()?.unwrap_or_default();
+    let uvs = attribute(Semantic::TexCoords(uv_set));
+    let uvs = uvs.map(|uvs| document.vectors::<2>(uvs, what)).transpose()?.unwrap_or_default();
     // Tangents without normals do not count (glTF 2.0 specification, section 3.7.2.1).
     let tangents = match attribute(Semantic::Tangents) {
         Some(tangents) if with_tangents && !normals.is_empty() => document.vectors::<4>(tangents, what)?,
@@ -55,17 +52,14 @@ pub(super) fn read(
         None => Vec::new(),
     };
     let colours = attributes.first().map_or(0, |colours| colours.values.all().len());
-    for (name, length) in [
+    let lengths = [
         ("normals", normals.len()),
         ("texture coordinates", uvs.len()),
         ("tangents", tangents.len()),
         ("colours", colours),
-    ] {
-        if length != 0 && length != positions.len() {
-            return Err(
-                document.wrong(format!("{what} has {} vertices and {length} {name}", positions.len()))
-            );
-        }
+    ];
+    if let Some((name, length)) = lengths.iter().find(|(_, n)| *n != 0 && *n != positions.len()) {
+        return Err(document.wrong(format!("{what} has {} vertices and {length} {name}", positions.len())));
     }
     let corners = match primitive.indices {
         Some(indices) => document.integers::<1>(indices, what)?.into_flattened(),

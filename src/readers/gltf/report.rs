@@ -6,7 +6,7 @@ use crate::error::{Location, Log, SceneError};
 const MAX_NAMED: usize = 3;
 
 /// An unsupported feature.
-struct Finding {
+struct Unsupported {
     what: String,
     fallback: &'static str,
     changes_picture: bool,
@@ -16,7 +16,7 @@ struct Finding {
 /// Findings about a model.
 #[derive(Default)]
 pub(super) struct Findings {
-    findings: Vec<Finding>,
+    findings: Vec<Unsupported>,
 }
 
 impl Findings {
@@ -31,20 +31,20 @@ impl Findings {
     }
 
     fn add(&mut self, what: &str, fallback: &'static str, changes_picture: bool, name: &str) {
-        let same = |f: &&mut Finding| f.what == what && f.fallback == fallback;
+        let same = |f: &&mut Unsupported| f.what == what && f.fallback == fallback;
         match self.findings.iter_mut().find(same) {
             Some(finding) if finding.names.iter().any(|known| known == name) => {}
             Some(finding) => finding.names.push(name.to_owned()),
             None => {
                 let (what, names) = (what.to_owned(), vec![name.to_owned()]);
-                self.findings.push(Finding { what, fallback, changes_picture, names });
+                self.findings.push(Unsupported { what, fallback, changes_picture, names });
             }
         }
     }
 
     /// Writes all findings to the log.
     pub fn write(self, place: &Location, log: &mut Log) -> Result<(), SceneError> {
-        for Finding { what, fallback, changes_picture, names } in self.findings {
+        for Unsupported { what, fallback, changes_picture, names } in self.findings {
             let mut listed = names.iter().take(MAX_NAMED).cloned().collect::<Vec<_>>().join(", ");
             if names.len() > MAX_NAMED {
                 listed = format!("{listed} and {} more", names.len() - MAX_NAMED);

@@ -15,7 +15,7 @@ use std::path::Path;
 
 /// A map statement: its text with options, and its line.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct MapText {
+pub(crate) struct MapStatement {
     pub text: String,
     pub line: u32,
 }
@@ -57,7 +57,7 @@ pub(crate) struct ClassicMaterial {
     /// Numbers of the extension, by keyword.
     pub principled: BTreeMap<&'static str, f32>,
     /// Maps by keyword. `map_bump` is `bump`.
-    pub maps: BTreeMap<&'static str, MapText>,
+    pub maps: BTreeMap<&'static str, MapStatement>,
     pub unmodelled: Vec<Unmodelled>,
 }
 
@@ -135,7 +135,7 @@ impl ClassicMaterial {
                 let keyword = if keyword == "map_bump" { "bump" } else { keyword };
                 let text = String::from_utf8_lossy(rest).trim().to_owned();
                 if !name(rest).is_empty() {
-                    self.maps.insert(keyword, MapText { text, line });
+                    self.maps.insert(keyword, MapStatement { text, line });
                 }
             }
             _ => {}
@@ -221,7 +221,7 @@ mod tests {
             ("a b", Rgb::new(0.1, 0.2, 0.3), Some(Rgb::splat(0.5)))
         );
         assert_eq!((a.opacity(), a.exponent, a.ior, a.model), (0.75, 10.0, Some(1.4), 7));
-        assert_eq!(a.maps["map_Kd"], MapText { text: "-s 2 2 1 wood.png # x".to_owned(), line: 10 });
+        assert_eq!(a.maps["map_Kd"], MapStatement { text: "-s 2 2 1 wood.png # x".to_owned(), line: 10 });
         assert_eq!((a.maps["bump"].line, a.principled["Pr"], a.unmodelled.len()), (11, 0.3, 0));
         assert_eq!((c.maps.len(), c.maps["map_Kd"].text.as_str()), (1, "my wood.png"));
         assert!((c.diffuse - Rgb::ONE).abs().max_element() < 1e-3, "{}", c.diffuse);

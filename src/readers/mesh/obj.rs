@@ -14,7 +14,7 @@
 //! - A face of two corners is no error.
 //! - It splits the mesh at `o`, `g` and `usemtl`, so vertices are no longer shared and smooth normals change.
 
-use super::obj_statements::Unread;
+use super::obj_statements::UnreadKeywords;
 use super::wavefront::{is_coloured, name, numbers, split_word, statements, values};
 use super::{RawMesh, polygon};
 use crate::attributes::{NamedAttribute, VERTEX_COLOUR};
@@ -38,7 +38,7 @@ pub fn read(
     selection: &PartSelection,
     remarks: &mut Vec<Warning>,
 ) -> Result<RawMesh, SceneError> {
-    let mut reader = Reader { selected: selection.only.is_empty(), ..Reader::default() };
+    let mut reader = ObjReader { selected: selection.only.is_empty(), ..ObjReader::default() };
     // Estimates for 30 bytes per line. They affect the speed only.
     reader.positions.reserve(bytes.len() / 100);
     reader.mesh.triangles.reserve(bytes.len() / 60);
@@ -55,7 +55,7 @@ pub fn read(
 }
 
 #[derive(Default)]
-struct Reader {
+struct ObjReader {
     positions: Vec<DVec3>,
     /// Colours of the positions up to the last one that has a colour.
     colours: Vec<Rgb>,
@@ -74,7 +74,7 @@ struct Reader {
     groups: Vec<String>,
     /// True if the selection contains the current object or groups.
     selected: bool,
-    unread: Unread,
+    unread: UnreadKeywords,
 }
 
 struct ObjVertex {
@@ -84,7 +84,7 @@ struct ObjVertex {
     next: u32,
 }
 
-impl Reader {
+impl ObjReader {
     fn statement(&mut self, statement: &[u8], line: u32, selection: &PartSelection) -> Result<(), String> {
         let (word, rest) = split_word(statement);
         match word {
@@ -180,7 +180,7 @@ impl Reader {
     }
 
     fn finish(self) -> RawMesh {
-        let Reader { positions, colours, uvs, normals, vertices, mut mesh, .. } = self;
+        let ObjReader { positions, colours, uvs, normals, vertices, mut mesh, .. } = self;
         mesh.positions = vertices.iter().map(|v| positions[v.position as usize]).collect();
         if vertices.iter().any(|v| v.uv != MISSING) {
             let uv = |v: &ObjVertex| uvs.get(v.uv as usize).copied().unwrap_or(Vec2::NAN);

@@ -67,9 +67,9 @@ const MAX_REPORTED: usize = 10;
 
 /// Keywords that are not modelled, with the line of each one's first use.
 #[derive(Default)]
-pub(super) struct Unread(Vec<(Vec<u8>, u32)>);
+pub(super) struct UnreadKeywords(Vec<(Vec<u8>, u32)>);
 
-impl Unread {
+impl UnreadKeywords {
     /// Adds a statement that the reader does not use, unless it cannot change a picture.
     pub fn add(&mut self, word: &[u8], rest: &[u8], line: u32) {
         if word.is_empty() || word[0] == b'#' || self.0.len() > MAX_REPORTED {

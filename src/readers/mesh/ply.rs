@@ -9,7 +9,7 @@
 //! - Each face is a list of its own in memory.
 //! - Messages have three lines.
 
-use super::ply_attributes::{self, Channel, CollectedAttributes, PlyAttribute, max_of_type};
+use super::ply_attributes::{self, ChannelProperty, CollectedAttributes, PlyAttribute, max_of_type};
 use super::{RawMesh, ply_statements, polygon};
 use crate::error::{Location, SceneError, Warning};
 use glam::{DVec3, Vec2, Vec3};
@@ -72,7 +72,7 @@ impl Element {
     fn attributes(&self, prefix: &str) -> Vec<PlyAttribute> {
         let mut channels = Vec::with_capacity(self.properties.len());
         for PlyProperty { name, list, max, .. } in &self.properties {
-            channels.push(list.is_none().then_some(Channel { name, max: *max }));
+            channels.push(list.is_none().then_some(ChannelProperty { name, max: *max }));
         }
         ply_attributes::attributes(prefix, &channels)
     }

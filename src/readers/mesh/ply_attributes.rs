@@ -25,7 +25,7 @@ const COLOURS: [([&str; 3], &str); 3] = [
 
 /// A property that may be a channel of an attribute.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Channel<'a> {
+pub(super) struct ChannelProperty<'a> {
     pub name: &'a str,
     /// Maximum of the type, if the type is an integer.
     pub max: Option<f64>,
@@ -102,7 +102,7 @@ pub(super) fn max_of_type(name: &str) -> Option<f64> {
 
 /// Returns the attributes among the properties of an element, which are `None` where they are lists. `prefix` is that
 /// of the attributes' names.
-pub(super) fn attributes(prefix: &str, properties: &[Option<Channel>]) -> Vec<PlyAttribute> {
+pub(super) fn attributes(prefix: &str, properties: &[Option<ChannelProperty>]) -> Vec<PlyAttribute> {
     let find = |name: &str| properties.iter().position(|p| p.is_some_and(|p| p.name == name));
     let attribute = |name: &str, at: &[usize], is_coded| PlyAttribute {
         name: format!("{prefix}{name}"),
@@ -145,8 +145,8 @@ mod tests {
     use super::*;
 
     fn names(properties: &str) -> Vec<(String, usize)> {
-        let channels: Vec<Option<Channel>> =
-            properties.split(' ').map(|name| Some(Channel { name, max: None })).collect();
+        let channels: Vec<Option<ChannelProperty>> =
+            properties.split(' ').map(|name| Some(ChannelProperty { name, max: None })).collect();
         attributes("vertex_", &channels).into_iter().map(|a| (a.name, a.channels.len())).collect()
     }
 
@@ -174,7 +174,7 @@ mod tests {
 
     #[test]
     fn integers_are_srgb_and_alpha_is_not() {
-        let channel = |name| Some(Channel { name, max: Some(255.0) });
+        let channel = |name| Some(ChannelProperty { name, max: Some(255.0) });
         let found = attributes("face_", &["red", "green", "blue", "alpha"].map(channel));
         let row = [255.0, 188.0, 0.0, 127.5];
         // 188 of 255 is 0.502886 linear, by the standard's formula in f64.
@@ -184,7 +184,8 @@ mod tests {
             found[0].value(&row)
         );
         assert_eq!(found[1].value(&row), Rgb::splat(0.5));
-        let linear = attributes("face_", &["r", "g", "b"].map(|name| Some(Channel { name, max: None })));
+        let linear =
+            attributes("face_", &["r", "g", "b"].map(|name| Some(ChannelProperty { name, max: None })));
         assert_eq!(linear[0].value(&[0.25, 2.0, 0.5]), Rgb::new(0.25, 2.0, 0.5));
     }
 }

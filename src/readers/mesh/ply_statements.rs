@@ -1,6 +1,6 @@
 //! Elements and properties of PLY files: those that are read, and names of those that are not.
 
-use super::ply_attributes::{Channel, attributes};
+use super::ply_attributes::{ChannelProperty, attributes};
 use crate::error::{Location, Warning};
 use crate::statements::{Fate, Statement};
 use std::path::Path;
@@ -45,7 +45,7 @@ const STATEMENTS: &[Statement] = {
 };
 
 /// An element of a header: its line, number, and the names of its properties.
-struct Element<'a> {
+struct HeaderElement<'a> {
     line: u32,
     name: &'a str,
     count: u64,
@@ -58,7 +58,7 @@ struct Element<'a> {
 /// Elements without number are left out. `header` ends before the first value.
 pub(super) fn unread(header: &[u8], path: &Path) -> Vec<Warning> {
     let text = String::from_utf8_lossy(header);
-    let named = |element: Element| {
+    let named = |element: HeaderElement| {
         let is_of_mesh = ["vertex", "face"].contains(&element.name);
         if !is_of_mesh {
             let what = format!("the PLY element {} is not read", element.name);
@@ -90,14 +90,14 @@ fn note(name: &str) -> Option<&'static str> {
 }
 
 /// Parses the elements of a valid header.
-fn elements(header: &str) -> Vec<Element<'_>> {
-    let mut elements: Vec<Element> = Vec::new();
+fn elements(header: &str) -> Vec<HeaderElement<'_>> {
+    let mut elements: Vec<HeaderElement> = Vec::new();
     for (line, text) in (1..).zip(header.split('\n')) {
         let words: Vec<&str> = text.split_whitespace().collect();
         match (words[..].iter().as_slice(), elements.last_mut()) {
             (["element", name, count], _) => {
                 let count = count.parse().unwrap_or(0);
-                elements.push(Element { line, name, count, properties: Vec::new() });
+                elements.push(HeaderElement { line, name, count, properties: Vec::new() });
             }
             (["property", kind @ .., name], Some(element)) => {
                 element.properties.push((line, name, kind.first() == Some(&"list")));
@@ -109,7 +109,7 @@ fn elements(header: &str) -> Vec<Element<'_>> {
 }
 
 /// Returns the fate of each property of vertices or faces.
-fn fates(element: &Element) -> Vec<Fate> {
+fn fates(element: &HeaderElement) -> Vec<Fate> {
     let properties = &element.properties;
     let find = |names: &[&str]| properties.iter().position(|(_, name, _)| names.contains(name));
     // Groups of properties that are read if all exist.
@@ -118,9 +118,9 @@ fn fates(element: &Element) -> Vec<Fate> {
         ["nx", "ny", "nz"].map(|name| find(&[name])).to_vec(),
         UV.map(|names| find(&names)).to_vec(),
     ];
-    let channels: Vec<Option<Channel>> = properties
+    let channels: Vec<Option<ChannelProperty>> = properties
         .iter()
-        .map(|(_, name, is_list)| (!is_list).then_some(Channel { name, max: None }))
+        .map(|(_, name, is_list)| (!is_list).then_some(ChannelProperty { name, max: None }))
         .collect();
     let of_attributes: Vec<usize> = attributes("", &channels)
         .iter()

@@ -18,7 +18,7 @@ const RECORD: usize = 50;
 
 /// Reads the STL file `bytes`; `path` is for messages.
 pub fn read(bytes: &[u8], path: &Path) -> Result<RawMesh, SceneError> {
-    let mut builder = Builder::default();
+    let mut builder = SoupBuilder::default();
     match binary_records(bytes) {
         Some(records) => records.chunks_exact(RECORD).for_each(|record| builder.record(record)),
         None => builder.text(bytes, path)?,
@@ -38,13 +38,13 @@ fn binary_records(bytes: &[u8]) -> Option<&[u8]> {
 }
 
 #[derive(Default)]
-struct Builder {
+struct SoupBuilder {
     mesh: RawMesh,
     /// Vertex at each position, by the bits of its coordinates.
     vertices: HashMap<[u32; 3], u32>,
 }
 
-impl Builder {
+impl SoupBuilder {
     fn record(&mut self, record: &[u8]) {
         let number = |at: usize| {
             let bytes = record.get(at..at + 4).and_then(|bytes| bytes.try_into().ok());

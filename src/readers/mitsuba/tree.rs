@@ -245,16 +245,7 @@ impl XmlReader<'_> {
                 self.ids.insert(need("as")?.to_owned(), object);
             }
             "ref" => parent.children.push(child(ChildTarget::Reference(need("id")?.to_owned()))),
-            "path" => {
-                let folder = folder_of(path).join(need("value")?);
-                match folder.is_dir() {
-                    true => self.folders.push(folder),
-                    false => {
-                        let what = format!("the folder {} does not exist", folder.display());
-                        self.log.warn(&place, what, "files are searched beside the scene")?;
-                    }
-                }
-            }
+            "path" => self.add_folder(folder_of(path).join(need("value")?), &place)?,
             tag if is_object(tag) || (tag == "spectrum" && get("type").is_some()) => {
                 let kind = if tag == "spectrum" { "texture" } else { tag };
                 let mut object = Object::new(kind, need("type")?, get("id"), place.clone());
@@ -270,6 +261,16 @@ impl XmlReader<'_> {
                 parent.properties.push(ObjectProperty { name, value, place, used: Cell::new(false) });
             }
         }
+        Ok(())
+    }
+
+    /// Adds a folder in which files are searched.
+    fn add_folder(&mut self, folder: PathBuf, place: &Location) -> Result<(), SceneError> {
+        if !folder.is_dir() {
+            let what = format!("the folder {} does not exist", folder.display());
+            return self.log.warn(place, what, "files are searched beside the scene");
+        }
+        self.folders.push(folder);
         Ok(())
     }
 

@@ -36,7 +36,7 @@ pub(super) const SLACK: f32 = 1e-3;
 const MAX_LISTED: usize = 3;
 
 /// Feature that is not modelled, with the names of the materials that ask for it.
-struct Finding {
+struct UnmodelledFeature {
     place: Location,
     what: String,
     fallback: String,
@@ -49,7 +49,7 @@ pub(super) struct LibraryReader<'b, 'a> {
     pub file: &'b Path,
     /// Length of the file's unit in the world.
     pub unit: f32,
-    findings: Vec<Finding>,
+    findings: Vec<UnmodelledFeature>,
 }
 
 impl<'b, 'a> LibraryReader<'b, 'a> {
@@ -70,7 +70,7 @@ impl<'b, 'a> LibraryReader<'b, 'a> {
                 Some(finding) => finding.names.push(name),
                 None => {
                     let place = Location::line(self.file, line);
-                    self.findings.push(Finding { place, what, fallback, names: vec![name] });
+                    self.findings.push(UnmodelledFeature { place, what, fallback, names: vec![name] });
                 }
             }
         }
@@ -79,7 +79,7 @@ impl<'b, 'a> LibraryReader<'b, 'a> {
 
     /// Warns of the features that are not modelled, each once.
     pub fn report(self) -> Result<(), SceneError> {
-        for Finding { place, what, fallback, names } in self.findings {
+        for UnmodelledFeature { place, what, fallback, names } in self.findings {
             let mut listed: Vec<String> =
                 names.iter().take(MAX_LISTED).map(|name| format!("\"{name}\"")).collect();
             if names.len() > MAX_LISTED {

@@ -366,9 +366,9 @@ fn attenuation(text: &MaterialText, place: &Location) -> Result<Option<Rgb>, Sce
     Ok(absorption)
 }
 
-/// Rejects keys that mean nothing for the kind of material.
-fn check_keys(text: &MaterialText, place: &Location) -> Result<(), SceneError> {
-    let known: &[&str] = match text.kind.as_str() {
+/// Returns the keys of a kind of material; `None` for an unknown kind.
+fn keys_of(kind: &str) -> Option<&'static [&'static str]> {
+    Some(match kind {
         "diffuse" | "mirror" => &["reflectance"],
         "glossy" => &["diffuse", "specular", "alpha", "distribution"],
         "plastic" => &["diffuse", "specular", "ior", "nonlinear"],
@@ -401,10 +401,15 @@ fn check_keys(text: &MaterialText, place: &Location) -> Result<(), SceneError> {
         ],
         "blend" => &["first", "second", "weight"],
         "coated" => &["base", "ior", "specular", "alpha", "distribution"],
-        other => {
-            let remedy = "use diffuse, glossy, plastic, roughplastic, conductor, mirror, glass, principled, blend or coated";
-            return Err(place.wrong(format!("unknown kind of material \"{other}\""), remedy));
-        }
+        _ => return None,
+    })
+}
+
+/// Rejects keys that mean nothing for the kind of material.
+fn check_keys(text: &MaterialText, place: &Location) -> Result<(), SceneError> {
+    let Some(known) = keys_of(&text.kind) else {
+        let remedy = "use diffuse, glossy, plastic, roughplastic, conductor, mirror, glass, principled, blend or coated";
+        return Err(place.wrong(format!("unknown kind of material \"{}\"", text.kind), remedy));
     };
     let given = [
         ("reflectance", text.reflectance.is_some()),

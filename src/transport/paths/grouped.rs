@@ -32,7 +32,7 @@ pub(super) struct GroupedVertices<'a, 'w> {
 
 /// One light sample in every lane.
 #[derive(Clone, Copy)]
-struct LightStep<'a> {
+struct PacketLightSample<'a> {
     /// Number of the sample among those requested.
     sample: u32,
     requested: LightSamples,
@@ -76,7 +76,7 @@ impl<'w> GroupedVertices<'_, 'w> {
         let requested = policy.light_samples();
         packet.light_samples = [requested.count as f32; LANES];
         for sample in 0..requested.count {
-            let step = LightStep { sample, requested, lit: smooth, alone, guided: &guided };
+            let step = PacketLightSample { sample, requested, lit: smooth, alone, guided: &guided };
             if smooth != 0 {
                 self.light(packet, step, policy);
             }
@@ -126,7 +126,7 @@ impl<'w> GroupedVertices<'_, 'w> {
     }
 
     /// Samples light once in every lane: an emitter, and a point on it.
-    fn light<R: PathPolicy<'w>>(&mut self, packet: &Packet, step: LightStep, policy: &R) {
+    fn light<R: PathPolicy<'w>>(&mut self, packet: &Packet, step: PacketLightSample, policy: &R) {
         let (world, surfaces, pair) = (self.world, self.surfaces, first_pair(FIRST));
         let mut samplers = packet.samplers;
         if step.requested != LightSamples::ONE {
@@ -163,7 +163,7 @@ impl<'w> GroupedVertices<'_, 'w> {
         packet: &Packet,
         lights: &DirectSamples16,
         useful: u16,
-        step: LightStep,
+        step: PacketLightSample,
     ) -> (Vec3x16, u16) {
         let (mut value, mut pdf, mut cos) = (Vec3x16::default(), [0.0; LANES], [0.0; LANES]);
         for group in self.groups.iter().filter(|group| group.lanes & useful != 0) {

@@ -1,6 +1,6 @@
 //! Mode "attributes": changes from element to element, byte by byte, in groups of 16.
 
-use super::reader::{CUT, Reader, unzigzag};
+use super::reader::{ByteReader, CUT, unzigzag};
 
 /// Number of elements of a group.
 const GROUP: usize = 16;
@@ -14,7 +14,7 @@ pub(super) fn decode(bytes: &[u8], count: usize, stride: usize) -> Result<Vec<u8
         _ => return Err("has compressed attributes of an unknown version"),
     };
     let end = bytes.len().checked_sub(padded).filter(|end| *end >= 1).ok_or(CUT)?;
-    let mut reader = Reader(&bytes[1..end]);
+    let mut reader = ByteReader(&bytes[1..end]);
     let (baseline, modes) = bytes[bytes.len() - tail..].split_at(stride);
     let mode = |channel: usize| modes.get(channel).copied().unwrap_or(0);
     let mut last = baseline.to_vec();
@@ -69,7 +69,7 @@ fn next(before: [u8; 4], codes: [u8; 4], mode: u8) -> Result<[u8; 4], &'static s
 }
 
 /// Returns the codes of one byte of the elements of a block. `control` is that of version 1.
-fn byte_codes(reader: &mut Reader, count: usize, control: Option<u8>) -> Result<Vec<u8>, &'static str> {
+fn byte_codes(reader: &mut ByteReader, count: usize, control: Option<u8>) -> Result<Vec<u8>, &'static str> {
     let lengths = match control {
         None => [0, 2, 4, 8],
         Some(0) => [0, 1, 2, 4],

@@ -1,6 +1,6 @@
 //! Modes "triangles" and "indices": lists of vertex indices.
 
-use super::reader::{CUT, Reader, push_index, unzigzag};
+use super::reader::{ByteReader, CUT, push_index, unzigzag};
 
 /// Number of entries that a queue remembers.
 const REMEMBERED: usize = 16;
@@ -33,14 +33,14 @@ impl<T: Copy + Default> Queue<T> {
 }
 
 /// State of decoding triangles.
-struct Triangles<'a> {
-    extra: Reader<'a>,
+struct TriangleDecoder<'a> {
+    extra: ByteReader<'a>,
     next: u32,
     last: u32,
     vertices: Queue<u32>,
 }
 
-impl Triangles<'_> {
+impl TriangleDecoder<'_> {
     fn new_vertex(&mut self) -> u32 {
         self.next = self.next.wrapping_add(1);
         self.next.wrapping_sub(1)
@@ -63,7 +63,7 @@ impl Triangles<'_> {
 
 /// Decodes `count` indices of triangles.
 pub(super) fn triangles(bytes: &[u8], count: usize, stride: usize) -> Result<Vec<u8>, &'static str> {
-    let mut reader = Reader(bytes);
+    let mut reader = ByteReader(bytes);
     if reader.byte()? != 0xE1 || !count.is_multiple_of(3) {
         return Err("has compressed triangles of an unknown version");
     }
@@ -72,7 +72,7 @@ pub(super) fn triangles(bytes: &[u8], count: usize, stride: usize) -> Result<Vec
     if table.iter().any(|byte| byte & 15 == 15 || byte >> 4 == 15) {
         return Err("has a wrong table of compressed triangles");
     }
-    let mut state = Triangles { extra: Reader(extra), next: 0, last: 0, vertices: Queue::new() };
+    let mut state = TriangleDecoder { extra: ByteReader(extra), next: 0, last: 0, vertices: Queue::new() };
     let mut edges: Queue<[u32; 2]> = Queue::new();
     let mut indices = Vec::with_capacity(count * stride);
     for &code in codes {
@@ -121,7 +121,7 @@ pub(super) fn triangles(bytes: &[u8], count: usize, stride: usize) -> Result<Vec
 /// Decodes `count` indices in sequence.
 pub(super) fn sequence(bytes: &[u8], count: usize, stride: usize) -> Result<Vec<u8>, &'static str> {
     let end = bytes.len().checked_sub(4).ok_or(CUT)?;
-    let mut reader = Reader(&bytes[..end]);
+    let mut reader = ByteReader(&bytes[..end]);
     if reader.byte()? != 0xD1 {
         return Err("has compressed indices of an unknown version");
     }

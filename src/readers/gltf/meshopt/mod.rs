@@ -20,7 +20,7 @@ const NAMES: [&str; 2] = ["EXT_meshopt_compression", "KHR_meshopt_compression"];
 /// Statements of the extension about a buffer view.
 #[derive(Deserialize)]
 #[serde(rename_all = "camelCase")]
-struct Compression {
+struct MeshoptView {
     /// Index of the buffer with the compressed bytes.
     buffer: usize,
     #[serde(default)]
@@ -33,9 +33,9 @@ struct Compression {
     filter: Option<String>,
 }
 
-impl Compression {
+impl MeshoptView {
     /// Returns the statements about a view; `None` for a view that is not compressed.
-    fn of(view: &View) -> Option<Result<Compression, String>> {
+    fn of(view: &View) -> Option<Result<MeshoptView, String>> {
         let others = &view.extensions.as_ref()?.others;
         let value = NAMES.iter().find_map(|name| others.get(*name))?;
         Some(serde_json::from_value(value.clone()).map_err(|error| error.to_string()))
@@ -43,7 +43,7 @@ impl Compression {
 
     /// Returns the elements in compressed `bytes`, or what is wrong.
     fn decode(&self, bytes: &[u8]) -> Result<Vec<u8>, &'static str> {
-        let Compression { byte_stride: stride, count, .. } = *self;
+        let MeshoptView { byte_stride: stride, count, .. } = *self;
         let filter = self.filter.as_deref().unwrap_or("NONE");
         match (self.mode.as_str(), stride) {
             ("ATTRIBUTES", 4..=256) if stride % 4 == 0 => {
@@ -65,7 +65,7 @@ impl Compression {
 pub(super) fn views(root: &Root, buffers: &[Vec<u8>]) -> Result<BTreeMap<usize, Vec<u8>>, String> {
     let mut views = BTreeMap::new();
     for (i, view) in root.buffer_views.iter().enumerate() {
-        let Some(compression) = Compression::of(view) else { continue };
+        let Some(compression) = MeshoptView::of(view) else { continue };
         let wrong = |problem: &str| format!("buffer view {i} {problem}");
         let compression =
             compression.map_err(|error| wrong(&format!("is compressed in an unknown way: {error}")))?;
@@ -84,10 +84,10 @@ pub(super) fn views(root: &Root, buffers: &[Vec<u8>]) -> Result<BTreeMap<usize, 
 
 /// True if a buffer merely stands for the bytes of compressed views, so that nothing reads it.
 pub(super) fn is_placeholder(root: &Root, buffer: usize) -> bool {
-    let compressions = || root.buffer_views.iter().filter_map(Compression::of);
+    let compressions = || root.buffer_views.iter().filter_map(MeshoptView::of);
     let mut views = root.buffer_views.iter().filter(|view| view.buffer.value() == buffer).peekable();
     views.peek().is_some()
-        && views.all(|view| Compression::of(view).is_some())
+        && views.all(|view| MeshoptView::of(view).is_some())
         && !compressions()
             .any(|compression| compression.is_ok_and(|compression| compression.buffer == buffer))
 }

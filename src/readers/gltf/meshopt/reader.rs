@@ -6,9 +6,9 @@ pub(super) const CUT: &str = "has compressed bytes that end too early";
 const LEFT: &str = "has compressed bytes that are left over";
 
 /// Bytes that are read from front to back.
-pub(super) struct Reader<'a>(pub &'a [u8]);
+pub(super) struct ByteReader<'a>(pub &'a [u8]);
 
-impl<'a> Reader<'a> {
+impl<'a> ByteReader<'a> {
     pub fn take(&mut self, count: usize) -> Result<&'a [u8], &'static str> {
         let (taken, rest) = self.0.split_at_checked(count).ok_or(CUT)?;
         self.0 = rest;

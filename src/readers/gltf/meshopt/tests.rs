@@ -1,6 +1,6 @@
 //! Tests against streams of meshoptimizer's encoder, 0.2.30 of its Python package, and of filters by their definition.
 
-use super::Compression;
+use super::MeshoptView;
 use serde_json::json;
 
 fn hex(text: &str) -> Vec<u8> {
@@ -19,7 +19,7 @@ fn decode(
     let statements = json!({
         "buffer": 0, "byteLength": bytes.len(), "byteStride": stride, "count": count, "mode": mode, "filter": filter,
     });
-    serde_json::from_value::<Compression>(statements).unwrap().decode(bytes)
+    serde_json::from_value::<MeshoptView>(statements).unwrap().decode(bytes)
 }
 
 fn words(indices: &[u32]) -> Vec<u8> {

@@ -34,7 +34,7 @@ use presampled::Presamples;
 use scene::{DistantDisc, Environment};
 use std::f32::consts::FRAC_1_PI;
 use table::TileTable;
-use tiles::{Block, Tiles};
+use tiles::{TilePlace, Tiles};
 
 /// The environment with its sampling distributions.
 #[derive(Clone, Debug)]
@@ -310,7 +310,7 @@ impl EnvironmentLight {
         let even = |i: usize| tile(i).rows.is_none();
         let blocks = each(wanted, |i| match &tile(i).rows {
             Some(rows) => self.tiles.sample(tile(i), rows, chosen[i].u),
-            None => Block::default(),
+            None => TilePlace::default(),
         });
         let mut directions = [Vec3::ZERO; LANES];
         let places = each(wanted, |i| {

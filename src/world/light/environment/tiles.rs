@@ -72,7 +72,7 @@ pub(super) struct Tiles {
 
 /// A sampled block, and random numbers for a point in it.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Block {
+pub(super) struct TilePlace {
     column: usize,
     row: usize,
     /// Random numbers in [0, 1)².
@@ -144,16 +144,16 @@ impl Tiles {
 
     /// Samples a block of a tile that is not even; `rows` is the distribution of its rows.
     #[inline]
-    pub fn sample(&self, tile: &Tile, rows: &DiscreteDistribution, u: Vec2) -> Block {
+    pub fn sample(&self, tile: &Tile, rows: &DiscreteDistribution, u: Vec2) -> TilePlace {
         let (row, v) = rows.sample(u.y);
         let row = tile.blocks[1].start + row;
         let (column, u) = self.columns[row].sample_between(&tile.blocks[0], u.x);
-        Block { column, row, u: Vec2::new(u, v), density: self.even[row * self.blocks + column] }
+        TilePlace { column, row, u: Vec2::new(u, v), density: self.even[row * self.blocks + column] }
     }
 
     /// Returns columns and rows of a block's cells.
     #[inline]
-    pub fn cells(&self, block: &Block) -> [Range<usize>; 2] {
+    pub fn cells(&self, block: &TilePlace) -> [Range<usize>; 2] {
         let cells = |at: usize, axis: usize| {
             at * self.block[axis]..((at + 1) * self.block[axis]).min(self.size[axis])
         };
@@ -163,7 +163,7 @@ impl Tiles {
     /// Samples a point uniformly by solid angle in a block. Returns its height, and the number of cells from the first
     /// column's left edge.
     #[inline]
-    pub fn place(&self, block: &Block) -> (f32, f32) {
+    pub fn place(&self, block: &TilePlace) -> (f32, f32) {
         let [columns, _] = self.cells(block);
         let (top, bottom) = (self.heights[block.row], self.heights[block.row + 1]);
         (top + (bottom - top) * block.u.y, columns.start as f32 + block.u.x * columns.len() as f32)
