@@ -83,6 +83,8 @@ pub enum Command {
     Compare(CompareArgs),
     /// Benchmark parts of the renderer
     Bench(BenchArgs),
+    /// Render a built-in scene to lightsplat-demo.exr and lightsplat-demo.png in the current folder
+    Demo,
     /// Print a completion script or the man page
     Generate(GenerateArgs),
 }
@@ -91,7 +93,8 @@ pub enum Command {
 #[derive(Debug, Args)]
 #[command(after_help = exit::HELP)]
 pub struct RenderArgs {
-    /// Scene: glTF (.glb, .gltf), a mesh (.obj, .ply, .stl), native (.toml) or Mitsuba (.xml)
+    /// Scene: glTF (.glb, .gltf), a mesh (.obj, .ply, .stl), native (.toml) or Mitsuba (.xml), or the name of a
+    /// built-in scene: apartment, cornell, furnace, hall, kitchen, knot, nave
     pub scene: PathBuf,
     /// Image to write: 32-bit float OpenEXR with metadata, or a tone-mapped PNG alone. `-` is standard output. `####`
     /// or `%04d` in the name stands for the number of `--frame` [default: the scene's name with .exr, in the current
@@ -324,7 +327,8 @@ pub enum VerifyAgainst {
 #[derive(Debug, Args)]
 #[command(after_help = exit::HELP)]
 pub struct InfoArgs {
-    /// Scene: glTF (.glb, .gltf), a mesh (.obj, .ply, .stl), native (.toml) or Mitsuba (.xml)
+    /// Scene: glTF (.glb, .gltf), a mesh (.obj, .ply, .stl), native (.toml) or Mitsuba (.xml), or the name of a
+    /// built-in scene: apartment, cornell, furnace, hall, kitchen, knot, nave
     pub scene: PathBuf,
     /// Print JSON
     #[arg(long)]
@@ -385,6 +389,16 @@ mod tests {
     #[test]
     fn the_definition_is_consistent() {
         Cli::command().debug_assert();
+    }
+
+    #[test]
+    fn help_lists_the_built_in_scenes() {
+        let cli = Cli::command();
+        for command in ["render", "info"] {
+            let sub = cli.find_subcommand(command).unwrap();
+            let scene = sub.get_arguments().find(|a| a.get_id() == "scene").unwrap();
+            assert!(scene.get_help().unwrap().to_string().contains(&readers::built_in_scenes()));
+        }
     }
 
     #[test]

@@ -132,8 +132,10 @@ pub fn read(path: &Path, more: &[&str]) -> Result<Vec<JobEntry>, Failure> {
             let line = lines.get("output").copied().unwrap_or_default();
             let mut options = file.options.clone();
             options.extend(picture.options);
+            let file = folder.join(&picture.scene);
+            let is_built_in = readers::is_built_in(&picture.scene) && !file.is_file();
             let entry = JobEntry {
-                scene: folder.join(picture.scene),
+                scene: if is_built_in { picture.scene } else { file },
                 reading: LoadOptions::default(),
                 output: folder.join(picture.output),
                 place: format!("{}, line {line}", path.display()),

@@ -16,6 +16,7 @@ mod chart;
 mod cli_page;
 mod compare;
 mod course;
+mod demo;
 mod denoise;
 mod denoise_args;
 mod develop;
@@ -83,6 +84,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Sheet(args) => sheet::run(args),
         Command::Compare(args) => compare::run(args),
         Command::Bench(args) => bench::run(args),
+        Command::Demo => demo::run(),
         Command::Generate(args) => generate::run(args),
     }));
     let code = match outcome {

@@ -2,6 +2,7 @@
 //!
 //! Both name the file and, if possible, the line.
 
+use super::built_in;
 use std::collections::BTreeSet;
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -199,6 +200,13 @@ fn way_out(path: &Path) -> String {
         "exr" | "png" | "jpg" | "jpeg" | "hdr" => {
             ("an image, not a scene", "name a scene, and an image for its light with --env".to_owned())
         }
+        "" => (
+            "neither a file with a known extension nor a built-in scene",
+            format!(
+                "name a .glb, .gltf, .obj, .ply, .stl, .toml or .xml file, or one of {}",
+                built_in::names()
+            ),
+        ),
         _ => (
             "an unknown kind of scene",
             "name a .glb, .gltf, .obj, .ply, .stl, .toml (native) or .xml (Mitsuba) file".to_owned(),

@@ -1,6 +1,7 @@
 //! Files of scene descriptions, and files that they refer to.
 
 use super::budget::lacking;
+use super::built_in;
 use super::error::{Location, SceneError};
 use std::fs;
 use std::io;
@@ -9,8 +10,11 @@ use std::path::Path;
 /// Memory per byte of a mesh file: its bytes, and the growing arrays of its content, old and new.
 const BYTES_PER_FILE_BYTE: u64 = 3;
 
-/// Reads a file that `from` refers to.
+/// Reads a file that `from` refers to, or a file of a built-in scene.
 pub(crate) fn read_file(path: &Path, from: &Location) -> Result<Vec<u8>, SceneError> {
+    if let Some(bytes) = built_in::bytes(path) {
+        return Ok(bytes.to_vec());
+    }
     let fail = |error| SceneError::Read { path: path.to_owned(), from: from.clone(), error };
     let length = regular_length(path).map_err(fail)?;
     if let Some(lack) = lacking(length.saturating_mul(BYTES_PER_FILE_BYTE)) {

@@ -13,6 +13,7 @@ mod attenuation;
 mod attribute_tests;
 mod attributes;
 mod budget;
+mod built_in;
 mod check;
 mod constants;
 mod decode;
@@ -50,6 +51,7 @@ use finish::{divide, recentre, sanitize, wanted};
 use scene::{Cameras, MAX_FRAMES, Scene};
 use std::path::Path;
 
+pub use built_in::{is_built_in, names as built_in_scenes};
 pub use error::{Location, SceneError, Severity, Warning};
 pub use file::{fnv1a, read_regular};
 pub use finish::sanitize::SanitizeReport;
@@ -74,7 +76,7 @@ pub struct Loaded {
 }
 
 /// Reads the scene at `path`: `.toml` is native, `.xml` Mitsuba's, `.glb` and `.gltf` glTF. `.obj`, `.ply` and `.stl`
-/// are meshes alone.
+/// are meshes alone. A name without folder and extension, which no file has, means a built-in scene.
 ///
 /// A glTF file or mesh without a lamp gets a default sky, unless the options say otherwise.
 ///
@@ -82,6 +84,8 @@ pub struct Loaded {
 /// If a file cannot be read or decoded, or the scene is invalid. Under [`LoadOptions::strict`] also if a feature is not
 /// modelled.
 pub fn load(path: &Path, options: &LoadOptions) -> Result<Loaded, SceneError> {
+    let built_in = built_in::resolve(path);
+    let path = built_in.as_deref().unwrap_or(path);
     let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
     let mut log = Log::new(options.strict);
     let is_model = !matches!(extension.as_str(), "toml" | "xml");

@@ -181,3 +181,21 @@ fn the_version_names_libraries_and_instruction_sets() {
     let bash = sandbox.run(&["generate", "bash"]).expect(0).stdout;
     assert!(bash.contains("--env-rotate"));
 }
+
+#[test]
+fn built_in_scenes_render_by_name_and_files_come_first() {
+    let sandbox = sandbox();
+    render(&sandbox, "cornell", &["--reproducible"]).expect(0);
+    let scene = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/cornell.toml");
+    render(&sandbox, scene, &["--reproducible", "-o", "file.exr"]).expect(0);
+    let bytes = |name: &str| fs::read(sandbox.path(name)).unwrap();
+    assert!(bytes("cornell.exr") == bytes("file.exr") && bytes("cornell.png") == bytes("file.png"));
+    assert!(sandbox.run(&["info", "kitchen"]).expect(0).stdout.contains("triangles"));
+    fs::write(sandbox.path("knot"), "").unwrap();
+    for name in ["knot", "no-such-scene"] {
+        let stderr = sandbox.run(&["info", name]).expect(3).stderr;
+        assert!(stderr.contains("or one of apartment, cornell"), "{stderr}");
+    }
+    fs::write(sandbox.path("jobs.toml"), "[[picture]]\nscene = 'cornell'\noutput = 'b.exr'\n").unwrap();
+    assert!(sandbox.run(&["batch", "jobs.toml", "--list"]).expect(0).stdout.contains("cornell"));
+}
