@@ -28,6 +28,7 @@ mod packet;
 mod prepared;
 mod query;
 mod ray;
+mod tbb;
 #[cfg(test)]
 mod tests;
 mod version;
@@ -41,5 +42,6 @@ pub use occluder::{Occluder, Occluders16, TriangleId};
 pub use packet::{Hits16, Rays16};
 pub use prepared::PreparedRays;
 pub use ray::{Hit, Ray};
+pub use tbb::tbb_version;
 pub use version::Version;
 pub use width::Width;

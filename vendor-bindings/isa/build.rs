@@ -3,31 +3,33 @@
 use std::path::PathBuf;
 use std::{env, fs};
 
-/// Instruction sets that compilers use unasked, by their names in Rust and in C, oldest first. A processor that lacks
-/// another one lacks one of these.
-const SETS: [(&str, &str); 22] = [
-    ("sse3", "sse3"),
-    ("ssse3", "ssse3"),
-    ("sse4.1", "sse4.1"),
-    ("sse4.2", "sse4.2"),
-    ("popcnt", "popcnt"),
-    ("avx", "avx"),
-    ("fma", "fma"),
-    ("bmi1", "bmi"),
-    ("bmi2", "bmi2"),
-    ("avx2", "avx2"),
-    ("avx512f", "avx512f"),
-    ("avx512cd", "avx512cd"),
-    ("avx512bw", "avx512bw"),
-    ("avx512dq", "avx512dq"),
-    ("avx512vl", "avx512vl"),
-    ("avx512ifma", "avx512ifma"),
-    ("avx512vbmi", "avx512vbmi"),
-    ("avx512vbmi2", "avx512vbmi2"),
-    ("avx512vnni", "avx512vnni"),
-    ("avx512bitalg", "avx512bitalg"),
-    ("avx512vpopcntdq", "avx512vpopcntdq"),
-    ("gfni", "gfni"),
+/// Instruction sets that compilers use unasked, oldest first. A processor that lacks another one lacks one of these.
+const SETS: [&str; 25] = [
+    "sse3",
+    "ssse3",
+    "sse4.1",
+    "sse4.2",
+    "popcnt",
+    "avx",
+    "fma",
+    "f16c",
+    "bmi1",
+    "bmi2",
+    "lzcnt",
+    "movbe",
+    "avx2",
+    "avx512f",
+    "avx512cd",
+    "avx512bw",
+    "avx512dq",
+    "avx512vl",
+    "avx512ifma",
+    "avx512vbmi",
+    "avx512vbmi2",
+    "avx512vnni",
+    "avx512bitalg",
+    "avx512vpopcntdq",
+    "gfni",
 ];
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -37,8 +39,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         return Ok(());
     }
     let built_for = env::var("CARGO_CFG_TARGET_FEATURE")?;
-    let needed = |rust: &str| built_for.split(',').any(|feature| feature == rust);
-    let lines = SETS.iter().filter(|(rust, _)| needed(rust)).map(|(_, c)| format!("NEEDS(\"{c}\")\n"));
+    let is_needed = |set: &str| built_for.split(',').any(|feature| feature == set);
+    let lines = SETS.iter().filter(|set| is_needed(set)).map(|set| format!("NEEDS(\"{set}\")\n"));
     let folder = PathBuf::from(env::var("OUT_DIR")?);
     fs::write(folder.join("needs.h"), lines.collect::<String>())?;
     cc::Build::new().file("src/check.c").include(&folder).compile("isa_check");

@@ -36,6 +36,19 @@ mod tests {
     }
 
     #[test]
+    fn the_check_agrees_with_the_standard_library() {
+        macro_rules! agree {
+            ($($set:tt)*) => { $(
+                let code = Some(i32::from(!std::is_x86_feature_detected!($set)));
+                assert_eq!(run_needing($set).0, code, $set);
+            )* };
+        }
+        agree!("sse4.2" "fma" "f16c" "bmi2" "lzcnt" "movbe" "avx2" "avx512f" "avx512vl" "avx512vbmi2" "gfni");
+        // No table knows it.
+        assert_eq!(run_needing("avx9").0, Some(1));
+    }
+
+    #[test]
     fn a_processor_without_the_instruction_set_is_told_in_a_sentence() {
         super::is_checked();
         assert_eq!(run_needing("sse2"), (Some(0), String::new()));
