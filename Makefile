@@ -4,10 +4,10 @@ CARGO ?= cargo
 TARGET_DIR := $(or $(CARGO_TARGET_DIR),target)
 HOST = $(shell rustc -vV | sed -n 's/^host: //p')
 
-.PHONY: help setup build demo test quick studies memory lint doc
+.PHONY: help setup build demo test quick studies memory lint doc wheel tarball package-test
 
 help: ## this list
-	@sed -n 's/^\([a-z]*\):.*## /\1\t/p' Makefile | expand -t 8
+	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' Makefile | expand -t 16
 
 setup: ## install what a build needs, a C++ compiler and Embree 4, and the denoiser if it can be had
 	@vendor-bindings/embree4-sys/setup.sh
@@ -37,6 +37,16 @@ memory: export ASAN_OPTIONS = detect_leaks=0:detect_odr_violation=0
 memory: setup ## AddressSanitizer over the tests of rays and shadow rays, in a folder of its own
 	CARGO_TARGET_DIR=$(TARGET_DIR)/memory $(CARGO) test -p embree --locked --lib --target $(HOST)
 	CARGO_TARGET_DIR=$(TARGET_DIR)/memory $(CARGO) test -p world --locked --lib --target $(HOST) -- shadow::
+
+wheel: ## dist/lightsplat-VERSION-...whl, which pip installs on any x86-64 Linux; takes some minutes
+	@packaging/build wheel
+
+tarball: ## dist/lightsplat-VERSION-x86_64-linux.tar.xz, the program and its libraries in one folder
+	@packaging/build tarball
+
+package-test: ## make both packages, install them in fresh folders, render from both
+	@packaging/build wheel tarball
+	python3 packaging/test_packages.py
 
 lint: setup ## format and clippy, warnings denied
 	$(CARGO) fmt --all --check

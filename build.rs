@@ -12,11 +12,16 @@ fn main() {
     if var("CARGO_PKG_NAME").is_ok_and(|name| name == "cli") {
         tell_commit();
     }
+    println!("cargo::rerun-if-env-changed=LIGHTSPLAT_MOVABLE");
     println!("cargo::rustc-link-arg=-Wl,-rpath,$ORIGIN");
+    // Packages hold their libraries, and name no folder of the machine that makes them.
+    let is_movable = var("LIGHTSPLAT_MOVABLE").is_ok_and(|value| !value.is_empty());
     // Absent if Embree is in a system folder.
     let directory = var("DEP_EMBREE4_LIBDIR").or_else(|_| var("DEP_EMBREE_LIBDIR"));
     if let Ok(directory) = directory {
-        println!("cargo::rustc-link-arg=-Wl,-rpath,{directory}");
+        if !is_movable {
+            println!("cargo::rustc-link-arg=-Wl,-rpath,{directory}");
+        }
         if var("CARGO_MANIFEST_LINKS").is_ok() {
             println!("cargo::metadata=LIBDIR={directory}");
         }

@@ -26,6 +26,7 @@ It is made from the definition of the options: `UPDATE_DOCS=1 cargo test -p cli 
 |---|---|
 | `OIDN_DIR` | folder of Open Image Denoise |
 | `EMBREE_DIR` | folder of Embree, for the build |
+| `LIGHTSPLAT_ISA` | largest instruction set that a wheel or tarball uses: `x86-64-v3` or `x86-64-v4` |
 ";
 
 /// Returns the page.

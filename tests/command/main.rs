@@ -11,6 +11,7 @@ mod merge;
 mod movie;
 mod output;
 mod plan;
+mod python;
 #[cfg(target_os = "linux")]
 mod random_interrupts;
 mod sheet;

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Makes a build possible: a C++ compiler, and Embree 4.3 or later from the system or, where there is
 # none, from the redistributable that PyPI carries, unpacked into .embree/ of the repository.
-# Quick and without effect when everything is there.
+# Quick and without effect when everything is there. --redistributable fetches that, whatever the system has.
 set -euo pipefail
 
 # Built for glibc >= 2.27. The wheel's Python modules are not used, only its two shared libraries.
@@ -49,6 +49,10 @@ command -v cargo >/dev/null || die "cargo is missing: install Rust from https://
 # Rust links with cc; the crate that compares images has a C++ source.
 if ! command -v cc >/dev/null || ! command -v c++ >/dev/null; then
   apt_install g++ libc6-dev || die "a C++ compiler is needed: install g++"
+fi
+if [[ ${1:-} == --redistributable ]]; then
+  [[ -d $root/.embree ]] || fetch_redistributable
+  exit 0
 fi
 if ! embree_is_found; then
   install_system_embree || fetch_redistributable

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Fetches Open Image Denoise 2, where neither OIDN_DIR nor the system has it, from the redistributable that PyPI
 # carries, into .oidn/ of the repository. Quick and without effect when it is there. Nothing needs it but denoising.
+# --redistributable fetches it, whatever the system has.
 set -euo pipefail
 
 # Built for glibc >= 2.17. The wheel's Python modules are not used, nor its modules for graphics processors.
@@ -19,8 +20,10 @@ readonly root
 # shellcheck source=../fetch.sh
 source "$root/vendor-bindings/fetch.sh"
 
-if [[ -n ${OIDN_DIR:-} || -e $root/.oidn/lib/${LIBRARIES[0]} ]] ||
-  { command -v ldconfig && ldconfig -p | grep "${LIBRARIES[0]} "; } >/dev/null; then
+system_has_it() {
+  [[ -n ${OIDN_DIR:-} ]] || { command -v ldconfig && ldconfig -p | grep "${LIBRARIES[0]} "; } >/dev/null
+}
+if [[ -e $root/.oidn/lib/${LIBRARIES[0]} ]] || { [[ ${1:-} != --redistributable ]] && system_has_it; }; then
   exit 0
 fi
 

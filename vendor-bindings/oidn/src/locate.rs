@@ -8,6 +8,13 @@ use std::path::{Path, PathBuf};
 /// Names of the library's file; its version is asked for once it is loaded.
 const NAMES: [&str; 2] = ["libOpenImageDenoise.so.2", "libOpenImageDenoise.so"];
 
+/// Folder of this package in the repository, unless the program is built for other machines, where anybody might have
+/// made a folder of this name.
+const REPOSITORY: Option<&str> = match option_env!("LIGHTSPLAT_MOVABLE") {
+    None => Some(env!("CARGO_MANIFEST_DIR")),
+    Some(_) => None,
+};
+
 /// Folders of libraries below an installation's.
 const BELOW: [&str; 4] = ["", "lib", "lib64", concat!("lib/", "x86_64-linux-gnu")];
 
@@ -22,8 +29,9 @@ pub fn first<T>(open: impl Fn(&Path) -> Result<T, String>) -> Result<T, Error> {
         });
     }
     let own = env::current_exe().ok().and_then(|program| Some(program.parent()?.to_owned()));
-    let repository = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../.oidn");
-    for folder in own.into_iter().chain([repository.canonicalize().unwrap_or(repository)]) {
+    let repository = REPOSITORY.map(|package| Path::new(package).join("../../.oidn"));
+    let repository = repository.map(|folder| folder.canonicalize().unwrap_or(folder));
+    for folder in own.into_iter().chain(repository) {
         if let Some(found) = first_below(&folder, &open, &mut failures) {
             return Ok(found);
         }
