@@ -9,8 +9,9 @@ use std::process::Command;
 
 fn main() {
     println!("cargo::rerun-if-changed=build.rs");
-    if var("CARGO_PKG_NAME").is_ok_and(|name| name == "cli") {
+    if var("CARGO_PKG_NAME").is_ok_and(|name| name == "bench") {
         tell_commit();
+        tell_compiler();
     }
     println!("cargo::rerun-if-env-changed=LIGHTSPLAT_MOVABLE");
     println!("cargo::rustc-link-arg=-Wl,-rpath,$ORIGIN");
@@ -25,6 +26,16 @@ fn main() {
         if var("CARGO_MANIFEST_LINKS").is_ok() {
             println!("cargo::metadata=LIBDIR={directory}");
         }
+    }
+}
+
+/// Sets the variable `LIGHTSPLAT_RUSTC` to the compiler's version for the crate.
+fn tell_compiler() {
+    let rustc = var("RUSTC").unwrap_or("rustc".to_owned());
+    let output =
+        Command::new(rustc).arg("--version").output().ok().and_then(|o| String::from_utf8(o.stdout).ok());
+    if let Some(version) = output {
+        println!("cargo::rustc-env=LIGHTSPLAT_RUSTC={}", version.trim());
     }
 }
 

@@ -28,3 +28,8 @@ pub use base::{self, film, math, progress, setting, stats};
 pub use render::{self, method, session, verify, walk};
 pub use world::{self, view};
 pub use {cli, readers, scene};
+
+/// Examples of `docs/library.md`, which are compiled as tests.
+#[cfg(doctest)]
+#[doc = include_str!("../docs/library.md")]
+struct LibraryPage;

@@ -1,5 +1,6 @@
 //! A benchmark, and its inputs.
 
+use super::machine::Facts;
 use super::report::{Report, Table};
 use super::study::{Results, Study, StudyError};
 use render::session::Session;
@@ -66,6 +67,8 @@ pub struct Context<'a> {
     pub session: Option<&'a Session>,
     /// Settings of measurements.
     pub settings: Settings,
+    /// Facts about machine and program, found before anything is measured.
+    pub machine: Facts,
     /// Callback for progress messages.
     pub say: &'a dyn Fn(&str),
 }
@@ -83,16 +86,11 @@ impl Benchmark {
 
     /// Makes a report of measured tables.
     pub fn report(&self, context: &Context, tables: Vec<Table>) -> Report {
-        let mut facts = vec![
-            ("version".to_owned(), env!("CARGO_PKG_VERSION").to_owned()),
-            ("threads".to_owned(), context.settings.threads.to_string()),
-            ("samples per case".to_owned(), context.settings.repeats.to_string()),
-        ];
+        let mut facts = context.machine.clone();
+        facts.push(("samples per case".to_owned(), context.settings.repeats.to_string()));
         if let Some(Session { world, .. }) = context.session {
             let triangles = world.scene.triangle_count();
             facts.push(("triangles".to_owned(), triangles.to_string()));
-            facts.push(("Embree".to_owned(), world.accel.device().version().to_string()));
-            facts.push(("widest packet".to_owned(), world.accel.widest().rays().to_string()));
         }
         Report {
             benchmark: self.name.to_owned(),

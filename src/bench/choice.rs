@@ -3,6 +3,7 @@
 //! Budgets are the processor seconds of the cache at five levels of its settings. The error of paths within a budget is
 //! interpolated between their images. The cost of a choice is its error over the error of the better method.
 
+use super::plot::Colour;
 use super::study::{
     Answer, Candidate, Cell, Column, Curve, Errors, Figure, Question, Results, Shot, Study, StudyError,
     Subject, figure, seconds,
@@ -45,11 +46,11 @@ const QUESTION: Question = Question {
         Column::new("errors", "", |_, s| Cell::exact(Figures::of(&s.errors))),
     ],
     figures: &[Figure {
-        name: "RMSE of the displayed picture",
+        name: "RMSE of the displayed image",
         error: |s| Some(s.errors.displayed_rmse()),
         curves: &[
-            Curve { name: "cache", colour: "#d00", joined: true, holds: |c| !c.is_path() },
-            Curve { name: "path --denoise", colour: "#0a7", joined: true, holds: |c| c.is_path() },
+            Curve { name: "cache", colour: Colour::Red, joined: true, holds: |c| !c.is_path() },
+            Curve { name: "path --denoise", colour: Colour::Green, joined: true, holds: |c| c.is_path() },
         ],
     }],
     ..Question::PLAIN
@@ -230,6 +231,7 @@ fn section(results: &mut Results, scene: &SceneAnswer) {
     results.push("scenes", answer.facts(), pilot);
     let document = &mut results.document;
     document.heading(2, &answer.scene);
+    answer.draw(document);
     document.text(&format!(
         "A sample of the cache equals {} paths, each with {} times its rays. The pilot took {} s, {} rays.",
         figure(choice.paths_a_sample),
@@ -238,7 +240,6 @@ fn section(results: &mut Results, scene: &SceneAnswer) {
         choice.pilot_rays
     ));
     document.grid(&answer.grid_of(BUDGETS, 2, budgets));
-    answer.draw(document);
 }
 
 #[cfg(test)]

@@ -1,20 +1,28 @@
-//! Documents for people: headings, text, tables and plots, as Markdown and as one self-contained page.
+//! Documents for people: headings, text, tables, plots and images, as Markdown and as one self-contained page.
+//!
+//! Markdown holds no images. Its plots and images are files of their own, which lie beside it.
 
-/// Style sheet of pages.
-const STYLE: &str = "body{font:15px system-ui,sans-serif;max-width:80em;margin:2em auto;padding:0 1em;color:#222}\
-table{border-collapse:collapse;font-variant-numeric:tabular-nums;margin:1em 0;font-size:13px}\
-th,td{padding:.15em .6em;text-align:right;border-bottom:1px solid #ddd}.name{text-align:left}\
-.wide{overflow-x:auto}figure{display:inline-block;margin:.4em .6em .4em 0;vertical-align:top}\
-figcaption{font-size:13px;max-width:22em}img{display:block}.zoom{image-rendering:pixelated;width:200px;height:200px}\
-svg{max-width:100%;height:auto}svg text{font:12px system-ui,sans-serif;fill:#222}.minor{color:#888}\
-.axis{stroke:#888;fill:none}.grid{stroke:#e5e5e5;fill:none}.bar{fill:#4a7fb5}.whisker{stroke:#222;fill:none}\
-.one{stroke:#a40;stroke-dasharray:4 3;fill:none}.warning{color:#a40}";
+use crate::escape::escaped;
+use crate::plot::{page_style, standalone};
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
 
 /// A document under construction, in both formats at once.
 pub struct Document {
     title: String,
     markdown: String,
     html: String,
+    files: Vec<(String, Vec<u8>)>,
+}
+
+/// An image of a strip, as JPEG.
+pub struct Thumbnail {
+    /// Caption.
+    pub caption: String,
+    /// Name of its file without an extension.
+    pub name: String,
+    /// Contents of its file.
+    pub jpeg: Vec<u8>,
 }
 
 /// A table of cells.
@@ -34,7 +42,7 @@ impl Document {
     /// Creates an empty document.
     pub fn new(title: impl Into<String>) -> Document {
         let title = title.into();
-        Document { markdown: format!("# {title}\n"), html: String::new(), title }
+        Document { markdown: format!("# {title}\n"), html: String::new(), files: Vec::new(), title }
     }
 
     /// Adds a heading of `level` 2 or more.
@@ -72,6 +80,56 @@ impl Document {
         self.html += html;
     }
 
+    /// Adds a plot. `name` is the name of its file without an extension, `about` its caption.
+    pub fn plot(&mut self, name: &str, about: &str, svg: &str) {
+        if !svg.starts_with("<svg") {
+            return self.text("There is nothing to plot.");
+        }
+        let file = format!("{}.svg", plain(name));
+        self.markdown += &format!("\n![{about}]({file})\n");
+        self.html += &format!("<figure>{svg}<figcaption>{}</figcaption></figure>\n", escaped(about));
+        self.files.push((file, standalone(svg).into_bytes()));
+    }
+
+    /// Adds images side by side.
+    pub fn strip(&mut self, images: Vec<Thumbnail>) {
+        if images.is_empty() {
+            return;
+        }
+        let (mut heads, mut links) = (Vec::new(), Vec::new());
+        self.html += "<div>";
+        for Thumbnail { caption, name, jpeg } in images {
+            let file = format!("{}.jpg", plain(&name));
+            links.push(format!("![{caption}]({file})"));
+            let (source, text) = (STANDARD.encode(&jpeg), escaped(&caption));
+            self.html += &format!(
+                "<figure><img src=\"data:image/jpeg;base64,{source}\" alt=\"{text}\">\
+                 <figcaption class=\"narrow\">{text}</figcaption></figure>\n"
+            );
+            heads.push(caption);
+            self.files.push((file, jpeg));
+        }
+        self.html += "</div>\n";
+        let names = heads.len();
+        self.markdown +=
+            &format!("\n{}", Grid { names, heads, rows: vec![links], minor: Vec::new() }.markdown());
+    }
+
+    /// Adds content that is folded away under a summary.
+    pub fn fold(&mut self, summary: &str, content: impl FnOnce(&mut Document)) {
+        let head = format!("<details><summary>{}</summary>\n", escaped(summary));
+        self.markdown += &format!("\n{head}");
+        self.html += &head;
+        content(self);
+        self.markdown += "\n</details>\n";
+        self.html += "</details>\n";
+    }
+
+    /// Returns the files of the plots and images of the Markdown, each with its name.
+    pub fn files(&self) -> &[(String, Vec<u8>)] {
+        &self.files
+    }
+
     /// Returns the document as Markdown.
     pub fn markdown(&self) -> &str {
         &self.markdown
@@ -79,10 +137,10 @@ impl Document {
 
     /// Returns the document as a page.
     pub fn html(&self) -> String {
-        let (title, body) = (escaped(&self.title), &self.html);
+        let (title, body, style) = (escaped(&self.title), &self.html, page_style());
         format!(
             "<!DOCTYPE html>\n<html lang=\"en\">\n<head><meta charset=\"utf-8\"><title>{title}</title>\n\
-             <style>{STYLE}</style></head>\n<body>\n<h1>{title}</h1>\n{body}</body>\n</html>\n"
+             <meta name=\"color-scheme\" content=\"light dark\"><style>{style}</style></head>\n<body>\n<h1>{title}</h1>\n{body}</body>\n</html>\n"
         )
     }
 }
@@ -123,7 +181,41 @@ impl Grid {
     }
 }
 
-/// Escapes text for HTML.
-pub fn escaped(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
+/// Returns a name of a file: letters, digits, dots and hyphens.
+fn plain(name: &str) -> String {
+    name.chars().map(|c| if c.is_ascii_alphanumeric() || c == '.' { c } else { '-' }).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn markdown_links_the_files_of_its_plots_and_images() {
+        let mut document = Document::new("A & B");
+        let svg = "<svg class=\"plot\"><text>x</text></svg>\n";
+        document.plot("race, my scene", "Error over time.", svg);
+        let image = |name: &str| Thumbnail {
+            caption: format!("{name} 2 s"),
+            name: name.to_owned(),
+            jpeg: vec![1, 2],
+        };
+        document.strip(vec![image("a"), image("b/c")]);
+        document.fold("All columns", |document| document.text("Rest."));
+        let names: Vec<&str> = document.files().iter().map(|(name, _)| &**name).collect();
+        assert_eq!(names, ["race--my-scene.svg", "a.jpg", "b-c.jpg"]);
+        let markdown = document.markdown();
+        assert!(names.iter().all(|name| markdown.contains(&format!("]({name})"))), "{markdown}");
+        assert!(
+            markdown.contains("\n\n<details><summary>All columns</summary>\n\nRest.\n\n</details>\n"),
+            "{markdown}"
+        );
+        let html = document.html();
+        assert!(
+            html.contains("data:image/jpeg;base64,AQI=")
+                && html.contains("A &amp; B")
+                && !html.contains("xmlns")
+        );
+        assert!(html.contains("Rest.</p>\n</details>"), "{html}");
+    }
 }

@@ -7,7 +7,7 @@ use super::{files, opened, study, talk, threads};
 use anyhow::anyhow;
 use base::film::atomic;
 use bench::export::{WRITERS, terminal};
-use bench::{Context, Kind, Settings};
+use bench::{Context, Kind, Settings, machine};
 use readers::LoadOptions;
 use std::path::PathBuf;
 
@@ -47,6 +47,7 @@ pub fn run(args: BenchArgs) -> Result<(), Failure> {
         repeats: args.repeats.map_or(defaults.repeats, |n| n as usize),
         seconds: args.seconds.unwrap_or(defaults.seconds),
     };
+    let machine = machine::facts(settings.threads);
     let pool = threads::pool(settings.threads)?;
     let session = args
         .scenes
@@ -58,7 +59,7 @@ pub fn run(args: BenchArgs) -> Result<(), Failure> {
     }
     let report = pool.install(|| {
         let session = session.as_ref().map(|opened| &opened.session);
-        let context = Context { session, settings, say: &|what| talk::note(what) };
+        let context = Context { session, settings, machine, say: &|what| talk::note(what) };
         benchmark.report(&context, measure(&context))
     });
     talk::print(&terminal(&report))?;

@@ -71,6 +71,9 @@ pub struct StudyArgs {
     /// Vary only this setting in `trade`, or take only this to its `extremes`, once for each; a wrong name lists them
     #[arg(long = "knob", value_name = "NAME")]
     pub knobs: Vec<String>,
+    /// Figures of other programs for the chart of `race`, a JSON object per line (see docs/benchmarks.md)
+    #[arg(long, value_name = "FILE")]
+    pub with: Option<PathBuf>,
 }
 
 fn parse_seconds(text: &str) -> Result<f64, String> {

@@ -1,4 +1,4 @@
-//! Writes text files.
+//! Writes small files.
 
 use super::exit::Failure;
 use super::talk;
@@ -11,9 +11,17 @@ use std::path::Path;
 /// # Errors
 /// If the file cannot be written.
 pub fn write(path: &Path, text: &str) -> Result<(), Failure> {
-    atomic::write_atomically(path, |file| file.write_all(text.as_bytes()))
-        .map_err(|error| ImageError::Write { path: path.to_owned(), error })
-        .map_err(Failure::output)?;
+    save(path, text.as_bytes())?;
     talk::wrote(&format!("wrote {}", path.display()), &[path.to_owned()]);
     Ok(())
+}
+
+/// Writes bytes to a file without a message. The file is complete or unchanged.
+///
+/// # Errors
+/// If the file cannot be written.
+pub fn save(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
+    atomic::write_atomically(path, |file| file.write_all(bytes))
+        .map_err(|error| ImageError::Write { path: path.to_owned(), error })
+        .map_err(Failure::output)
 }

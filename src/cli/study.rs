@@ -2,11 +2,11 @@
 
 use super::bench_args::BenchArgs;
 use super::exit::Failure;
-use super::files::write;
+use super::files::{save, write};
 use super::{interrupt, talk, threads};
 use anyhow::{Context as _, anyhow};
 use base::progress::Control;
-use bench::study::{Plan, ReferenceSettings, SAMPLES, Study, StudyError, file_of};
+use bench::study::{PeerFigure, Plan, ReferenceSettings, SAMPLES, Study, StudyError, file_of};
 use bench::{Benchmark, Kind, Scenes};
 use render::session::OpenError;
 use std::path::{Path, PathBuf};
@@ -19,6 +19,11 @@ pub fn run(benchmark: &Benchmark, args: BenchArgs) -> Result<(), Failure> {
     if exports.into_iter().any(Option::is_some) || args.seconds.is_some() {
         return Err(Failure::usage(anyhow!(
             "bench {name} writes JSON, Markdown and HTML into --output FOLDER, and has no --seconds"
+        )));
+    }
+    if args.study.with.is_some() && name != "race" {
+        return Err(Failure::usage(anyhow!(
+            "bench {name}: --with would have no effect; it is for bench race"
         )));
     }
     let Kind::Study { scenes, pixels, run } = &benchmark.kind else {
@@ -36,6 +41,7 @@ pub fn run(benchmark: &Benchmark, args: BenchArgs) -> Result<(), Failure> {
     if let Some(remedy) = remedy {
         return Err(Failure::usage(anyhow!("bench {name}: {remedy}")));
     }
+    let peers = args.study.with.as_deref().map(PeerFigure::read).transpose().map_err(failure)?;
     let control = Arc::new(Control::new());
     interrupt::cancel_on_signal(&control).context("cannot catch signals").map_err(Failure::render)?;
     let defaults = ReferenceSettings::default();
@@ -51,13 +57,18 @@ pub fn run(benchmark: &Benchmark, args: BenchArgs) -> Result<(), Failure> {
         },
         samples: args.study.samples.unwrap_or(SAMPLES),
         knobs: args.study.knobs,
+        peers: peers.unwrap_or_default(),
     };
     let pool = threads::pool(plan.threads)?;
     let study = Study::new(plan, &control, &|what| talk::note(what)).map_err(failure)?;
-    let results = pool.install(|| run(&study, &files)).map_err(failure)?;
+    let mut results = pool.install(|| run(&study, &files)).map_err(failure)?;
+    results.conclude();
     let markdown = results.document.markdown();
     talk::print(markdown)?;
     let file = |extension: &str| folder.join(name).with_extension(extension);
+    for (name, bytes) in results.document.files() {
+        save(&folder.join(name), bytes)?;
+    }
     write(&file("json"), &format!("{:#}\n", results.json))?;
     write(&file("md"), markdown)?;
     write(&file("html"), &results.document.html())
@@ -74,7 +85,10 @@ fn scene_files(args: &BenchArgs, scenes: &[&str]) -> Vec<PathBuf> {
 
 fn failure(error: StudyError) -> Failure {
     match error {
-        StudyError::Open(OpenError::Scene(_)) | StudyError::Compare(_) => Failure::input(error),
+        StudyError::Open(OpenError::Scene(_))
+        | StudyError::Compare(_)
+        | StudyError::Unreadable { .. }
+        | StudyError::Figures { .. } => Failure::input(error),
         StudyError::Knob { .. } => Failure::usage(error),
         StudyError::Open(OpenError::Build { .. }) | StudyError::Denoise(_) => Failure::render(error),
         StudyError::File { .. } | StudyError::Write(_) => Failure::output(error),

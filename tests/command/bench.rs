@@ -20,6 +20,7 @@ fn every_benchmark_runs_and_exports() {
         let read = |file: &str| std::fs::read_to_string(sandbox.path(file)).unwrap();
         let report: serde_json::Value = serde_json::from_str(&read("a.json")).unwrap();
         assert_eq!(report["benchmark"], name);
+        assert_names_machine(&report["facts"], &[&stdout, &read("a.md"), &read("a.html")]);
         let rows = report["tables"].as_array().unwrap().iter().flat_map(|t| t["rows"].as_array().unwrap());
         let mut cases = 0;
         for row in rows {
@@ -30,6 +31,21 @@ fn every_benchmark_runs_and_exports() {
         assert!(cases > 3, "{stdout}");
         assert_eq!(read("a.csv").lines().count(), cases + 1);
         assert!(read("a.md").starts_with(&format!("# {name}")) && read("a.html").contains("<svg"));
+    }
+}
+
+/// Asserts that a report's facts name machine and program, and that its texts hold them.
+pub fn assert_names_machine(facts: &serde_json::Value, texts: &[&str]) {
+    let facts = facts.as_array().unwrap();
+    for name in
+        ["version", "compiler", "compiled for", "Embree", "processor", "threads", "load at the start", "date"]
+    {
+        let fact = facts.iter().find(|fact| fact[0] == name).unwrap_or_else(|| panic!("{name}: {facts:?}"));
+        let value = fact[1].as_str().unwrap();
+        assert!(
+            !value.is_empty() && texts.iter().all(|text| text.contains(value)),
+            "{name} {value}: {texts:?}"
+        );
     }
 }
 

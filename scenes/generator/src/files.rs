@@ -1,7 +1,8 @@
 //! Files of lightsplat's own scenes as part of the program: descriptions, and the meshes that they name.
 
 /// Names of the scenes, each that of its TOML file.
-pub const NAMES: [&str; 7] = ["apartment", "cornell", "furnace", "hall", "kitchen", "knot", "nave"];
+pub const NAMES: [&str; 9] =
+    ["apartment", "cornell", "furnace", "glass", "hall", "kitchen", "knot", "nave", "terrace"];
 
 macro_rules! files {
     ($($path:literal)*) => {
@@ -20,10 +21,12 @@ files! {
     "cornell/short_block.obj"
     "cornell/tall_block.obj"
     "furnace.toml"
+    "glass.toml"
     "hall.toml"
     "kitchen.toml"
     "knot.toml"
     "nave.toml"
+    "terrace.toml"
 }
 
 /// Returns the bytes of a file, by its path below the folder of the scenes.

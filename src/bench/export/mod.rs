@@ -38,7 +38,6 @@ fn html(report: &Report) -> String {
 /// Returns a document with a section per table.
 fn document(report: &Report) -> Document {
     let mut document = Document::new(headline(report));
-    document.facts(&report.facts);
     for table in &report.tables {
         document.heading(2, &table.title);
         document.text(&table.about);
@@ -47,6 +46,8 @@ fn document(report: &Report) -> Document {
         document.grid(&Grid { names, heads: table.heads(), rows: table.cells(), ..Grid::default() });
         table.warnings.iter().for_each(|warning| document.warning(warning));
     }
+    document.heading(2, "Machine and settings");
+    document.facts(&report.facts);
     document
 }
 

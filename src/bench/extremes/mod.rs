@@ -13,7 +13,7 @@
 mod curves;
 
 use super::document::Grid;
-use super::plot::{Series, scatter};
+use super::plot::{Colour, Series, scatter};
 use super::study::{
     Answer, Axis, Candidate, Question, Results, Shot, Study, StudyError, Subject, Truth, figure,
 };
@@ -43,8 +43,6 @@ const GROWTH: &str = "Largest error along a curve over the error of the ordinary
 
 const BIAS: &str = "The mean farthest from the mean of the scene's own reference, and its place. Errors of these curves \
     differ between scenes. Few paths find light through mirrors and glass, so their means are as noisy as the images.";
-
-const COLOURS: [&str; 8] = ["#d00", "#f80", "#0a7", "#07c", "#80c", "#888", "#a60", "#000"];
 
 /// Settings of virtual lights.
 const LIGHTS: [(&str, &str); 2] = [("vpls", "3000"), ("direct_vpls", "512")];
@@ -167,20 +165,21 @@ fn section(results: &mut Results, curve: &Curve, answer: &Answer, methods: &[&st
     let document = &mut results.document;
     document.heading(2, curve.name);
     document.text(&format!("{}.", curve.about));
+    let series = |(i, method): (usize, &&str)| Series {
+        name: (*method).to_owned(),
+        colour: Colour::ALL[i % Colour::ALL.len()],
+        joined: true,
+        points: answer.points(of_method(answer, i, methods.len()), |s| Some(s.errors.rel_rmse())),
+    };
+    let series: Vec<Series> = methods.iter().enumerate().map(series).collect();
+    let caption = format!("Relative error over {}. Both axes are logarithmic.", curve.name);
+    document.plot(curve.name, &caption, &scatter(answer.axis(), "relative error", &series));
     let row = |shots: &[Shot]| {
         let cells =
             shots.iter().map(|s| format!("{} / {:.3}", figure(s.errors.rel_rmse()), s.errors.brightness));
         [format!("{:e}", shots[0].value)].into_iter().chain(cells).collect()
     };
     document.grid(&Grid::new(1, &[&[curve.name], methods].concat(), scenes().map(row).collect()));
-    let series = |(i, method): (usize, &&str)| Series {
-        name: (*method).to_owned(),
-        colour: COLOURS[i % COLOURS.len()],
-        joined: true,
-        points: answer.points(of_method(answer, i, methods.len()), |s| Some(s.errors.rel_rmse())),
-    };
-    let series: Vec<Series> = methods.iter().enumerate().map(series).collect();
-    document.figure(&scatter(answer.axis(), "relative error", &series));
 }
 
 #[cfg(test)]

@@ -7,7 +7,7 @@
 
 mod scenes;
 
-use super::plot::{Series, scatter};
+use super::plot::{Colour, Series, scatter};
 use super::study::{
     Answer, Axis, Candidate, Cell, Column, Question, Results, Shot, Study, StudyError, Subject, Truth, figure,
 };
@@ -58,18 +58,19 @@ const QUESTION: Question = Question {
 };
 
 /// A curve of a plot: name, colour and value of an image.
-type Curve = (&'static str, &'static str, fn(&Shot) -> Option<f64>);
+type Curve = (&'static str, Colour, fn(&Shot) -> Option<f64>);
 
 /// Curves of the times.
 const TIMES: [Curve; 4] = [
-    ("eye pass", "#d00", |s| Some(s.counted.seconds(&[Stage::EyePass]))),
-    ("cache", "#07c", |s| Some(s.counted.seconds(&CACHE))),
-    ("denoising", "#0a7", |s| Some(s.counted.seconds(&[Stage::Denoise]))),
-    ("whole", "#000", |s| Some(s.seconds())),
+    ("eye pass", Colour::Red, |s| Some(s.counted.seconds(&[Stage::EyePass]))),
+    ("cache", Colour::Blue, |s| Some(s.counted.seconds(&CACHE))),
+    ("denoising", Colour::Green, |s| Some(s.counted.seconds(&[Stage::Denoise]))),
+    ("whole", Colour::Plain, |s| Some(s.seconds())),
 ];
 
 /// Curves of the errors.
-const ERRORS: [Curve; 2] = [("at equal samples", "#d00", error), ("at equal time", "#07c", at_equal_time)];
+const ERRORS: [Curve; 2] =
+    [("at equal samples", Colour::Red, error), ("at equal time", Colour::Blue, at_equal_time)];
 
 /// Returns the error, if there is a reference.
 fn error(shot: &Shot) -> Option<f64> {
@@ -136,6 +137,10 @@ fn section(results: &mut Results, name: &str, answer: &Answer) {
     let facts = json!({ "name": name, "knob": answer.axis() });
     results.push("series", facts, json!({ "points": answer.rows() }));
     results.document.heading(2, name);
+    plot(results, answer, [name, "processor seconds"], &TIMES);
+    if answer.reference.is_some() {
+        plot(results, answer, [name, "relative error"], &ERRORS);
+    }
     let mut grid = answer.grid(&answer.shots);
     grid.heads[0] = answer.axis().to_owned();
     if let [first, .., last] = &answer.shots[..] {
@@ -152,19 +157,17 @@ fn section(results: &mut Results, name: &str, answer: &Answer) {
         grid.rows.push(["growth".to_owned()].into_iter().chain(columns.map(grown)).collect());
     }
     results.document.grid(&grid);
-    plot(results, answer, "processor seconds", &TIMES);
-    if answer.reference.is_some() {
-        plot(results, answer, "relative error", &ERRORS);
-    }
 }
 
-fn plot(results: &mut Results, answer: &Answer, name: &str, curves: &[Curve]) {
+/// Adds curves with the names of the section and of the vertical axis.
+fn plot(results: &mut Results, answer: &Answer, [section, name]: [&str; 2], curves: &[Curve]) {
     let series = |(name, colour, at): &Curve| Series {
         name: (*name).to_owned(),
-        colour,
+        colour: *colour,
         joined: true,
         points: answer.points(&answer.shots, at),
     };
     let series: Vec<Series> = curves.iter().map(series).collect();
-    results.document.figure(&scatter(answer.axis(), name, &series));
+    let about = format!("{section}: {name} over {}. Both axes are logarithmic.", answer.axis());
+    results.document.plot(&format!("{section}-{name}"), &about, &scatter(answer.axis(), name, &series));
 }

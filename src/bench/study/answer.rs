@@ -2,9 +2,9 @@
 
 use super::cell::figure;
 use super::reference::Noise;
-use super::{Answer, Axis, Column, Curve, Shot};
+use super::{Answer, Axis, Column, Curve, Figure, Question, Shot};
 use crate::document::{Document, Grid};
-use crate::plot::{Point, Series, scatter};
+use crate::plot::{Panel, Point, Series, scatter};
 use serde_json::{Value, json};
 
 impl Answer {
@@ -39,26 +39,51 @@ impl Answer {
         self.grid_of(self.question.table, self.question.names, shots)
     }
 
-    /// Adds the table of all images, with mere points of curves in grey, and the figures.
+    /// Adds a table of the main images with the brief columns, then the table of all images and columns, folded away.
+    /// Mere points of curves are grey.
     pub fn tell(&self, document: &mut Document) {
+        let main = self.shots.iter().filter(|shot| shot.candidate.main);
+        let Question { table, brief, names, .. } = self.question;
+        let is_brief = |column: &&Column<Shot>| brief.contains(&column.head);
+        let texts = table.iter().filter(|column| !column.head.is_empty()).take(names).filter(is_brief);
+        let columns: Vec<&Column<Shot>> = table.iter().filter(is_brief).collect();
+        document.grid(&self.grid_in(&columns, texts.count(), main));
         let mut grid = self.grid(&self.shots);
         grid.minor = (0..self.shots.len()).filter(|&i| !self.shots[i].candidate.main).collect();
-        document.grid(&grid);
-        self.draw(document);
+        document.fold("All images and all columns", |document| {
+            document.text(&self.about());
+            document.grid(&grid);
+        });
     }
 
     /// Adds the figures.
     pub fn draw(&self, document: &mut Document) {
         for figure in self.question.figures {
-            let series = |curve: &Curve| Series {
-                name: curve.name.to_owned(),
-                colour: curve.colour,
-                joined: curve.joined,
-                points: self.points(self.shots.iter().filter(|s| (curve.holds)(&s.candidate)), figure.error),
-            };
-            let series: Vec<Series> = figure.curves.iter().map(series).collect();
-            document.figure(&scatter(self.axis(), figure.name, &series));
+            let about =
+                format!("{} over {} of {}. Lower left is better.", figure.name, self.axis(), self.scene);
+            let name = format!("{}-{}", self.scene, figure.name);
+            document.plot(&name, &about, &scatter(self.axis(), figure.name, &self.series(figure)));
         }
+    }
+
+    /// Returns the figures as panels of a chart.
+    pub fn panels(&self) -> Vec<Panel> {
+        let panel = |figure: &Figure| Panel {
+            title: format!("{}: {}", self.scene, figure.name),
+            series: self.series(figure),
+        };
+        self.question.figures.iter().map(panel).collect()
+    }
+
+    /// Returns the curves of a figure.
+    fn series(&self, figure: &Figure) -> Vec<Series> {
+        let series = |curve: &Curve| Series {
+            name: curve.name.to_owned(),
+            colour: curve.colour,
+            joined: curve.joined,
+            points: self.points(self.shots.iter().filter(|s| (curve.holds)(&s.candidate)), figure.error),
+        };
+        figure.curves.iter().map(series).collect()
     }
 
     /// Returns points over the question's axis, in its order.
@@ -103,10 +128,20 @@ impl Answer {
         names: usize,
         records: impl IntoIterator<Item = &'r R>,
     ) -> Grid {
+        self.grid_in(&columns.iter().collect::<Vec<_>>(), names, records)
+    }
+
+    /// Returns a row per record with chosen columns. Columns without any text are left out.
+    fn grid_in<'r, R: 'r>(
+        &self,
+        columns: &[&Column<R>],
+        names: usize,
+        records: impl IntoIterator<Item = &'r R>,
+    ) -> Grid {
         let records: Vec<&R> = records.into_iter().collect();
         let text = |column: &Column<R>, record: &R| (column.cell)(self, record).text;
         let is_empty = |column: &Column<R>| records.iter().all(|record| text(column, record).is_empty());
-        let shown: Vec<_> = columns.iter().filter(|c| !c.head.is_empty() && !is_empty(c)).collect();
+        let shown: Vec<_> = columns.iter().copied().filter(|c| !c.head.is_empty() && !is_empty(c)).collect();
         let row = |record: &&R| shown.iter().map(|column| text(column, record)).collect();
         let heads: Vec<&str> = shown.iter().map(|column| column.head).collect();
         Grid::new(names, &heads, records.iter().map(row).collect())

@@ -25,6 +25,28 @@ pub enum StudyError {
         /// Error of the operating system.
         source: std::io::Error,
     },
+    /// A file of other programs' figures cannot be read.
+    #[error("cannot read {}: {source}", path.display())]
+    Unreadable {
+        /// Path of the file.
+        path: PathBuf,
+        /// Error of the operating system.
+        source: std::io::Error,
+    },
+    /// A line of other programs' figures is wrong.
+    #[error(
+        "{}:{line}: {what}; a line is a JSON object with name, scene, seconds, and rel_mse or flip, see \
+         docs/benchmarks.md",
+        path.display()
+    )]
+    Figures {
+        /// Path of the file.
+        path: PathBuf,
+        /// Number of the line.
+        line: usize,
+        /// Description of the error.
+        what: String,
+    },
     /// The name of a setting to vary does not exist.
     #[error("there is no knob {name}; there are: {known}")]
     Knob {

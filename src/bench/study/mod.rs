@@ -17,6 +17,7 @@ mod counted;
 mod equal;
 mod error;
 mod judge;
+mod peers;
 mod plan;
 mod progress;
 mod question;
@@ -27,6 +28,7 @@ mod store;
 mod subject;
 
 pub use error::StudyError;
+pub use peers::PeerFigure;
 pub use plan::{Plan, ReferenceSettings, SAMPLES};
 pub use progress::Study;
 pub use results::Results;

@@ -1,6 +1,6 @@
 //! Options of studies.
 
-use super::StudyError;
+use super::{PeerFigure, StudyError};
 use std::path::PathBuf;
 
 /// Options of a study that the command line sets.
@@ -19,6 +19,8 @@ pub struct Plan {
     pub samples: u32,
     /// Names of the settings or quantities to vary, in studies that vary any; if empty, all.
     pub knobs: Vec<String>,
+    /// Figures of other programs, for studies with a chart.
+    pub peers: Vec<PeerFigure>,
 }
 
 impl Plan {

@@ -2,6 +2,7 @@
 
 use super::store::{Store, program};
 use super::{Plan, StudyError};
+use crate::machine::{self, Facts};
 use base::progress::Control;
 use render::denoise::Denoiser;
 
@@ -15,6 +16,8 @@ pub struct Study<'a> {
     pub say: &'a (dyn Fn(&str) + Sync),
     /// Stored images.
     pub(super) store: Store,
+    /// Facts about machine and program, found before the first image.
+    machine: Facts,
     /// Name of the denoiser, if there is one.
     denoiser: Option<String>,
 }
@@ -37,7 +40,8 @@ impl<'a> Study<'a> {
                 None
             }
         };
-        Ok(Study { plan, control, say, store, denoiser })
+        let machine = machine::facts(plan.threads);
+        Ok(Study { plan, control, say, store, machine, denoiser })
     }
 
     /// Returns true if images can be denoised.
@@ -46,15 +50,15 @@ impl<'a> Study<'a> {
     }
 
     /// Returns the conditions that the figures depend on, each with its name.
-    pub(super) fn facts(&self) -> Vec<(String, String)> {
+    pub(super) fn facts(&self) -> Facts {
         let [width, height] = self.plan.resolution;
-        vec![
-            ("version".to_owned(), env!("CARGO_PKG_VERSION").to_owned()),
-            ("program".to_owned(), program()),
-            ("pixels".to_owned(), format!("{width}x{height}")),
-            ("threads".to_owned(), self.plan.threads.to_string()),
-            ("runs per image".to_owned(), self.plan.repeats.to_string()),
-            ("denoiser".to_owned(), self.denoiser.clone().unwrap_or("none".to_owned())),
-        ]
+        let own = [
+            ("pixels", format!("{width}x{height}")),
+            ("runs per image", self.plan.repeats.to_string()),
+            ("denoiser", self.denoiser.clone().unwrap_or("none".to_owned())),
+            ("program", program()),
+        ];
+        let own = own.map(|(name, value)| (name.to_owned(), value));
+        self.machine.iter().cloned().chain(own).collect()
     }
 }

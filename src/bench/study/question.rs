@@ -1,6 +1,7 @@
 //! Questions about images, declared as data, and the judged images of their answers.
 
 use super::{Candidate, Cell, Counted, Errors, Reference};
+use crate::plot::Colour;
 use base::film::Image;
 use base::stats::Stage;
 use std::rc::Rc;
@@ -25,6 +26,8 @@ pub struct Question<'q> {
     /// Columns of the table, a row per image. The first `names` columns hold text.
     pub table: &'static [Column<Shot>],
     pub names: usize,
+    /// Heads of the columns that matter most. The others are folded away; none if all columns are shown.
+    pub brief: &'static [&'static str],
     /// Figures.
     pub figures: &'static [Figure],
 }
@@ -41,6 +44,7 @@ impl Question<'_> {
         keeps_images: false,
         table: &[],
         names: 1,
+        brief: &[],
         figures: &[],
     };
 }
@@ -121,8 +125,8 @@ pub struct Figure {
 pub struct Curve {
     /// Name in the legend; empty to name each point instead.
     pub name: &'static str,
-    /// CSS colour.
-    pub colour: &'static str,
+    /// Colour.
+    pub colour: Colour,
     /// True if a line joins the points.
     pub joined: bool,
     /// Returns true for the images of the curve.
@@ -148,9 +152,9 @@ pub struct Answer {
 impl Answer {
     /// Creates the answer to a question before its images are rendered.
     pub fn to(question: &Question) -> Answer {
-        let Question { axis, table, names, figures, .. } = *question;
+        let Question { axis, table, names, brief, figures, .. } = *question;
         Answer {
-            question: Question { axis, table, names, figures, ..Question::PLAIN },
+            question: Question { axis, table, names, brief, figures, ..Question::PLAIN },
             scene: String::new(),
             triangles: 0,
             reference: None,

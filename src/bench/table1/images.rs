@@ -1,8 +1,9 @@
 //! Images embedded in the page: of every method, with its FLIP and enlarged parts.
 
-use crate::document::{Document, escaped};
+use crate::document::Document;
+use crate::escape::escaped;
 use crate::study::{Answer, Shot};
-use ::image::codecs::jpeg::JpegEncoder;
+use crate::thumbnail;
 use ::image::codecs::png::PngEncoder;
 use ::image::{ExtendedColorType, ImageEncoder};
 use base::film::metrics::flip_map;
@@ -27,8 +28,8 @@ pub fn show(document: &mut Document, answer: &Answer, number: usize) {
     let parts = main.first().map_or_else(Vec::new, |(_, flip)| worst(flip, truth.width, truth.height, ZOOMS));
     let id = |what: &str| format!("s{number}-{what}");
     let named = |figure: String, id: &str| figure.replacen("<img ", &format!("<img id=\"{id}\" "), 1);
-    let mut html = "<h3>Pictures</h3>\n<p>Each with its FLIP against the reference, and the parts in which the FLIP of the \
-                    first method is largest. Hold the pointer over a picture to see the reference.</p>\n<div>"
+    let mut html = "<p>Each image has its FLIP against the reference, and the parts in which the FLIP of the first method is \
+                    largest. Hold the pointer over an image to see the reference.</p>\n<div>"
         .to_owned();
     html += &named(figure(&shown(truth, exposure), None, "reference", ""), &id("whole"));
     for (k, part) in parts.iter().enumerate() {
@@ -40,7 +41,7 @@ pub fn show(document: &mut Document, answer: &Answer, number: usize) {
         let caption = format!("{label}: {:.2} s, FLIP {flip_error:.4}", shot.seconds());
         html += "<div>";
         html += &figure(&shown(&shot.image, exposure), Some(&id("whole")), &caption, "");
-        let heat = jpeg(&heatmap::colours(flip), &shot.image);
+        let heat = data_url(&thumbnail::jpeg(&heatmap::colours(flip), &shot.image));
         html += &figure(&heat, None, "FLIP, 0 to 1", "");
         for (k, part) in parts.iter().enumerate() {
             let zoomed = zoom(&shot.image, exposure, *part);
@@ -67,16 +68,12 @@ fn figure(source: &str, beneath: Option<&str>, caption: &str, class: &str) -> St
 
 /// Encodes a tone-mapped image as a data URL.
 fn shown(image: &Image, exposure: f32) -> String {
-    jpeg(&tone::to_srgb8(image, exposure), image)
+    data_url(&thumbnail::shown(image, exposure))
 }
 
-/// Encodes bytes of the size of an image as JPEG, since a page has many images.
-fn jpeg(bytes: &[u8], image: &Image) -> String {
-    let mut file = Vec::new();
-    let encoder = JpegEncoder::new_with_quality(&mut file, 92);
-    // Writing to memory fails only for sizes beyond the limits of JPEG, which give an empty image.
-    let _ = encoder.write_image(bytes, image.width, image.height, ExtendedColorType::Rgb8);
-    format!("data:image/jpeg;base64,{}", STANDARD.encode(file))
+/// Returns the data URL of a JPEG file.
+fn data_url(jpeg: &[u8]) -> String {
+    format!("data:image/jpeg;base64,{}", STANDARD.encode(jpeg))
 }
 
 /// A square part of an image, in pixels.

@@ -26,10 +26,12 @@ mod images;
 mod paper;
 
 use super::document::Grid;
+use super::plot::{Chart, Colour};
 use super::study::{
     Answer, Bounded, Candidate, Cell, Column, Curve, Figure, Group, Question, Results, Shot, Study,
     StudyError, Truth, bounded, optional, time_to,
 };
+use super::thumbnail::strip;
 use super::{Benchmark, Kind, Scenes};
 use base::stats::Stage;
 use entries::{OPPONENTS, entries, lightcuts};
@@ -48,12 +50,34 @@ pub(super) const BENCHMARK: Benchmark = Benchmark {
     },
 };
 
+/// Caption of the chart.
+const CHART: &str = "Lower left is better. Each point is an image. Lines join images of one method that no other image of it \
+    beats. FLIP is against the reference. relMSE of light is without aliasing and noise.";
+
+/// Images that are shown side by side.
+const SHOWN: [&str; 4] = ["default", "cache, anisotropic", "photon-cache", "lightcuts, unshared"];
+
 /// Methods of a scene over processor seconds.
 const QUESTION: Question = Question {
     error: Truth::PixelsAndEyeSamples,
     compared_with: |c: &Candidate| (!c.whole_pixels() && c.label != "lightcuts").then_some(0),
     keeps_images: true,
     names: 2,
+    brief: &[
+        "method",
+        "paper's",
+        "N_c",
+        "cut",
+        "T_light",
+        "T_f",
+        "T_cache",
+        "total",
+        "PSNR",
+        "FLIP",
+        "PSNR to LC",
+        "speed to LC",
+        "speed to PM",
+    ],
     table: &[
         Column::new("label", "method", |_, s| Cell::text(&s.candidate.label)),
         Column::new("paper", "paper's", |_, s| {
@@ -109,7 +133,7 @@ const QUESTION: Question = Question {
         Column::new("", "at equal light", |a, s| at_equal(a, s, 2, |v| v.at_equal_light)),
     ],
     figures: &[
-        Figure { name: "FLIP against the reference", error: |s| Some(s.errors.flip), curves: CURVES },
+        Figure { name: "FLIP", error: |s| Some(s.errors.flip), curves: CURVES },
         Figure {
             name: "relMSE of light, without noise",
             error: |s| s.light.map(|e| e.rel_mse),
@@ -121,11 +145,21 @@ const QUESTION: Question = Question {
 
 /// Other methods as curves, ours and the paper's as single points.
 const CURVES: &[Curve] = &[
-    Curve { name: "lightcuts", colour: "#a40", joined: true, holds: |c| c.group == Group::Lightcuts },
-    Curve { name: "photon-cache", colour: "#693", joined: true, holds: |c| c.group == Group::PhotonCache },
-    Curve { name: "path --denoise", colour: "#939", joined: true, holds: |c| c.group == Group::DenoisedPath },
-    Curve { name: "", colour: "#4a7fb5", joined: false, holds: |c| c.group == Group::Default },
-    Curve { name: "", colour: "#a40", joined: false, holds: |c| c.group == Group::Unshared },
+    Curve { name: "lightcuts", colour: Colour::Orange, joined: true, holds: |c| c.group == Group::Lightcuts },
+    Curve {
+        name: "photon-cache",
+        colour: Colour::Olive,
+        joined: true,
+        holds: |c| c.group == Group::PhotonCache,
+    },
+    Curve {
+        name: "path --denoise",
+        colour: Colour::Green,
+        joined: true,
+        holds: |c| c.group == Group::DenoisedPath,
+    },
+    Curve { name: "", colour: Colour::Red, joined: false, holds: |c| c.group == Group::Default },
+    Curve { name: "", colour: Colour::Orange, joined: false, holds: |c| c.group == Group::Unshared },
 ];
 
 fn time(shot: &Shot, stages: &[Stage]) -> Cell {
@@ -198,7 +232,10 @@ fn run(study: &Study, scenes: &[PathBuf]) -> Result<Results, StudyError> {
         answers.push(study.ask(question, [Ok(subject)])?);
     }
     let mut results = Results::new(study, "Table 1", LEGEND);
+    let panels = answers.iter().flat_map(Answer::panels).collect();
+    let chart = Chart { axis: "processor seconds", panels, caption: vec![CHART.to_owned()] };
     let document = &mut results.document;
+    document.plot("table1", &chart.description(), &chart.svg());
     document.heading(2, "Beside the paper");
     document.text(
         "Ratios of times with the light pass; in brackets at equal FLIP / PSNR / error of light. The paper's are the \
@@ -212,9 +249,12 @@ fn run(study: &Study, scenes: &[PathBuf]) -> Result<Results, StudyError> {
         results.push("scenes", answer.facts(), more);
         let document = &mut results.document;
         document.heading(2, &answer.scene);
-        document.text(&format!("{} triangles. {}", answer.triangles, answer.about()));
+        document.text(&format!("{} triangles.", answer.triangles));
+        document.strip(strip(answer, &SHOWN));
         answer.tell(document);
-        images::show(document, answer, number);
+        document.fold("Every method, its FLIP and the parts with the largest FLIP", |document| {
+            images::show(document, answer, number);
+        });
     }
     Ok(results)
 }

@@ -3,7 +3,7 @@
 //! Paper: Herzog et al. 2009, Table 1. Only its ratios of times with the light pass are listed. Its rows are of other
 //! scenes than ours.
 
-/// Caption of the table.
+/// Explanation of the columns.
 pub const LEGEND: &str = "Times are processor seconds over all threads. N_c: records; direct %: share of them that hold \
     direct light; anisotropy: long over short radius of footprints, direct / indirect; a: their radius over the distance \
     of what casts light and shadow; cut: clusters; T_light: light pass and trees; T_f: records and cuts of eye samples; \

@@ -4,8 +4,9 @@ use super::errors::{ERRORS, error_of, name};
 use super::front::{Effect, is_on_front};
 use super::sweep::{KnobEffect, Sweep};
 use super::verdict::{ERROR_TOLERANCE, TIME_TOLERANCE};
-use crate::document::{Grid, escaped};
-use crate::plot::{Point, Series, scatter};
+use crate::document::Grid;
+use crate::escape::escaped;
+use crate::plot::{Colour, Point, Series, scatter};
 use crate::study::{Answer, Group, Results, Shot, optional, seconds};
 use base::setting::JudgedBy;
 use serde_json::json;
@@ -28,7 +29,10 @@ pub fn section(results: &mut Results, answer: &Answer, sweeps: &[Sweep], effects
     document.grid(&answer.grid(answer.shots.iter().filter(named)));
     for error in ERRORS {
         document.heading(3, &format!("Pareto front of {}", name(error)));
-        document.figure(&scatter(answer.axis(), name(error), &cloud(answer, error)));
+        let about =
+            format!("{} over {} of {}. Lower left is better.", name(error), answer.axis(), answer.scene);
+        let svg = scatter(answer.axis(), name(error), &cloud(answer, error));
+        document.plot(&format!("{}-front-{}", answer.scene, name(error)), &about, &svg);
         document.grid(&answer.grid(front(answer, error)));
     }
     document.heading(3, "Knob by knob");
@@ -97,13 +101,13 @@ fn cloud(answer: &Answer, error: JudgedBy) -> Vec<Series> {
     };
     let points = front(answer, error).into_iter().map(place).collect();
     vec![
-        of("designed sample", "#bbb", Group::Sample),
-        of("one knob turned", "#4a7fb5", Group::Sweep),
-        Series { name: "front".to_owned(), colour: "#693", joined: true, points },
-        of("--quality", "#939", Group::Quality),
-        of("default", "#d00", Group::Default),
-        of("", "#a40", Group::Other),
-        of("path --denoise", "#0a7", Group::DenoisedPath),
+        of("designed sample", Colour::Grey, Group::Sample),
+        of("one knob turned", Colour::Steel, Group::Sweep),
+        Series { name: "front".to_owned(), colour: Colour::Olive, joined: true, points },
+        of("--quality", Colour::Purple, Group::Quality),
+        of("default", Colour::Red, Group::Default),
+        of("", Colour::Orange, Group::Other),
+        of("path --denoise", Colour::Green, Group::DenoisedPath),
     ]
 }
 
@@ -119,9 +123,9 @@ fn plot(answer: &Answer, sweep: &Sweep) -> String {
         points,
     };
     let series = [
-        series("coarse to fine", "#4a7fb5", levels.clone()),
-        series("default", "#d00", default.into_iter().collect()),
-        series("", "#4a7fb5", levels),
+        series("coarse to fine", Colour::Steel, levels.clone()),
+        series("default", Colour::Red, default.into_iter().collect()),
+        series("", Colour::Steel, levels),
     ];
     format!(
         "<figure style=\"width:46%\">{}<figcaption>{}: {}</figcaption></figure>\n",

@@ -1,13 +1,19 @@
 //! Time to a quality: the default method beside denoised paths.
 //!
 //! The default is rendered with several sample counts and with the settings of `--quality`, paths with several sample
-//! counts. Times are interpolated along the Pareto front of either.
+//! counts. Times are interpolated along the Pareto front of either. A chart shows all images, and figures of other
+//! programs from a file.
 
+mod chart;
+
+use self::chart::{FLIP, REL_MSE, chart};
 use super::document::Grid;
+use super::plot::Colour;
 use super::study::{
-    Answer, Bounded, Candidate, Cell, Column, Curve, Errors, Figure, Question, Results, Study, StudyError,
-    bounded, denoised_paths, qualities, rmse_of_psnr, time_to,
+    Answer, Bounded, Candidate, Cell, Column, Curve, Errors, Figure, PeerFigure, Question, Results, Study,
+    StudyError, bounded, denoised_paths, optional, qualities, rmse_of_psnr, seconds, time_to,
 };
+use super::thumbnail::strip;
 use super::{Benchmark, Kind, Scenes};
 use render::method::Method;
 use serde::Serialize;
@@ -16,7 +22,7 @@ use std::path::PathBuf;
 
 pub(super) const BENCHMARK: Benchmark = Benchmark {
     name: "race",
-    about: "Time to a PSNR and to a FLIP: the default beside denoised paths",
+    about: "Error over time: cache, denoised paths and other programs",
     kind: Kind::Study {
         scenes: Scenes::Files(&["cornell", "knot", "nave", "kitchen", "apartment", "hall"]),
         pixels: [512, 512],
@@ -28,17 +34,24 @@ pub(super) const BENCHMARK: Benchmark = Benchmark {
 const SPP: [u32; 3] = [1, 4, 64];
 
 /// Caption of the table of times.
-const LEGEND: &str = "Processor seconds over all threads to a PSNR or FLIP: the default / `path --denoise`, and in \
-    brackets how many times as fast the default is. Times are interpolated in logarithms along the Pareto front of the \
-    images: the default with 1 to 64 samples per pixel and with --quality, paths with 1 to 256 samples. <: even the \
-    fastest image is better. >: no image is as good; the time is that of the best. PSNR is without the noise of the \
-    reference. FLIP includes it.";
+const TABLE: &str = "Processor seconds to a quality: cache / paths + denoiser. The figure in brackets says how many times as \
+    fast the cache is. <: the fastest image is better than that. >: the best image is worse than that.";
+
+/// Explanation of all figures.
+const LEGEND: &str = "Seconds are processor seconds over all threads, without loading the scene. Times to a quality are \
+    interpolated in logarithms between the images that no other image beats. The cache has 1 to 64 samples per pixel and \
+    the levels of --quality; paths have 1 to 256 samples per pixel. PSNR and FLIP compare displayed images, relMSE compares \
+    radiances. PSNR and relMSE are without the noise of the reference, relMSE also without the worst pixel of a thousand. \
+    FLIP includes the noise of the reference.";
+
+/// Images that are shown side by side.
+const SHOWN: [&str; 4] = ["draft", "preview", "default", "path --denoise, 16 spp"];
 
 /// Images of a scene over processor seconds.
 const QUESTION: Question = Question {
     names: 2,
     table: &[
-        Column::new("label", "picture", |_, s| Cell::text(&s.candidate.label)),
+        Column::new("label", "image", |_, s| Cell::text(&s.candidate.label)),
         Column::new("is_path", "", |_, s| Cell::exact(s.candidate.is_path())),
         Column::new("options", "options", |_, s| Cell::text(&s.candidate.options)),
         Column::new("seconds", "seconds", |_, s| Cell::seconds(s.seconds())),
@@ -48,20 +61,23 @@ const QUESTION: Question = Question {
         Column::new("", "FLIP", |_, s| Cell::figure(s.errors.flip)),
         Column::new("", "relMSE", |_, s| Cell::figure(s.errors.rel_mse)),
     ],
+    brief: &["image", "seconds", "PSNR", "FLIP", "relMSE"],
+    keeps_images: true,
     figures: &[
-        Figure {
-            name: "RMSE of the displayed picture",
-            error: |s| Some(s.errors.displayed_rmse()),
-            curves: CURVES,
-        },
-        Figure { name: "FLIP", error: |s| Some(s.errors.flip), curves: CURVES },
+        Figure { name: REL_MSE, error: |s| Some(s.errors.rel_mse), curves: CURVES },
+        Figure { name: FLIP, error: |s| Some(s.errors.flip), curves: CURVES },
     ],
     ..Question::PLAIN
 };
 
 const CURVES: &[Curve] = &[
-    Curve { name: "the default", colour: "#d00", joined: false, holds: |c| !c.is_path() },
-    Curve { name: "path --denoise", colour: "#0a7", joined: true, holds: |c| c.is_path() },
+    Curve { name: "lightsplat, cache", colour: Colour::Red, joined: false, holds: |c| !c.is_path() },
+    Curve {
+        name: "lightsplat, paths + denoiser",
+        colour: Colour::Green,
+        joined: true,
+        holds: |c| c.is_path(),
+    },
 ];
 
 /// A quality that times are measured to.
@@ -92,7 +108,11 @@ fn run(study: &Study, scenes: &[PathBuf]) -> Result<Results, StudyError> {
     let ask = |path: &PathBuf| study.ask(question, [study.subject(path)]);
     let answers: Vec<Answer> = scenes.iter().map(ask).collect::<Result<_, _>>()?;
     let times: Vec<Vec<Times>> = answers.iter().map(times).collect();
-    let mut results = Results::new(study, "Race", LEGEND);
+    let mut results = Results::new(study, "Time and error", LEGEND);
+    let (peers, conditions) = (&study.plan.peers, conditions(&results));
+    let chart = chart(&answers, peers, conditions);
+    results.document.plot("race", &chart.description(), &chart.svg());
+    results.document.text(TABLE);
     let heads = TARGETS.map(Target::name);
     let heads: Vec<&str> = [""].into_iter().chain(heads.iter().map(String::as_str)).collect();
     let row = |(answer, times): (&Answer, &Vec<Times>)| {
@@ -102,7 +122,39 @@ fn run(study: &Study, scenes: &[PathBuf]) -> Result<Results, StudyError> {
     for (answer, times) in answers.iter().zip(&times) {
         section(&mut results, answer, times);
     }
+    if !peers.is_empty() {
+        results.json["others"] = json!(peers);
+        results.document.heading(2, "Figures of other programs");
+        results.document.grid(&others(peers));
+    }
     Ok(results)
+}
+
+/// Returns the caption's sentence on machine and program.
+fn conditions(results: &Results) -> String {
+    let fact = |name| results.fact(name);
+    format!(
+        "lightsplat {} with {}, compiled for {}, at {} pixels. {}, threads: {}. Load at the start: {}. {}.",
+        fact("version"),
+        fact("denoiser"),
+        fact("compiled for"),
+        fact("pixels"),
+        fact("processor"),
+        fact("threads"),
+        fact("load at the start"),
+        fact("date")
+    )
+}
+
+/// Returns the table of other programs.
+fn others(peers: &[PeerFigure]) -> Grid {
+    let row = |peer: &PeerFigure| {
+        let names = [&peer.scene, &peer.name, &peer.label].map(String::clone);
+        let figures = [peer.psnr, peer.flip, peer.rel_mse].map(optional);
+        names.into_iter().chain([seconds(peer.seconds)]).chain(figures).collect()
+    };
+    let heads = ["scene", "program", "image", "seconds", "PSNR", "FLIP", "relMSE"];
+    Grid::new(3, &heads, peers.iter().map(row).collect())
 }
 
 /// Returns the images of a scene.
@@ -119,7 +171,7 @@ fn images(study: &Study) -> Vec<Candidate> {
 fn section(results: &mut Results, answer: &Answer, times: &[Times]) {
     results.push("scenes", answer.facts(), json!({ "points": answer.rows(), "times": times }));
     results.document.heading(2, &answer.scene);
-    results.document.text(&answer.about());
+    results.document.strip(strip(answer, &SHOWN));
     answer.tell(&mut results.document);
 }
 

@@ -1,0 +1,114 @@
+//! Points over two logarithmic axes.
+
+use super::axis::Axis;
+use super::series::{Point, Series};
+use crate::escape::escaped;
+
+/// Width and height of a scatter plot.
+const WIDTH: f64 = 720.0;
+const HEIGHT: f64 = 420.0;
+/// Width of its legend.
+const LEGEND: f64 = 150.0;
+
+/// Area of a panel between its axes.
+#[derive(Clone, Copy)]
+pub struct Area {
+    pub left: f64,
+    pub right: f64,
+    pub top: f64,
+    pub bottom: f64,
+}
+
+/// Returns text at `x` on the baseline `y`. `anchor` is `start`, `middle` or `end`.
+pub fn text(x: f64, y: f64, anchor: &str, text: &str) -> String {
+    format!("<text x=\"{x:.1}\" y=\"{y:.1}\" text-anchor=\"{anchor}\">{}</text>\n", escaped(text))
+}
+
+/// Returns a scatter plot with a legend. Points whose coordinates are not positive are left out.
+pub fn scatter(x_name: &str, y_name: &str, series: &[Series]) -> String {
+    let area = Area { left: 70.0, right: WIDTH - LEGEND, top: 14.0, bottom: HEIGHT - 48.0 };
+    let Some(drawn) = panel(area, series) else {
+        return "<p>There is nothing to plot.</p>\n".to_owned();
+    };
+    let mut svg = format!(
+        "<svg class=\"plot\" viewBox=\"0 0 {WIDTH} {HEIGHT}\" width=\"{WIDTH}\" role=\"img\">\n{drawn}"
+    );
+    svg += &text(0.5 * (area.left + area.right), HEIGHT - 10.0, "middle", x_name);
+    svg += &format!(
+        "<text transform=\"translate(14 {}) rotate(-90)\" text-anchor=\"middle\">{}</text>\n",
+        0.5 * (area.top + area.bottom),
+        escaped(y_name)
+    );
+    let shown = series.iter().filter(|s| !s.name.is_empty() && s.drawable().next().is_some());
+    for (i, series) in shown.enumerate() {
+        svg += &key(area.right + 12.0, area.top + 10.0 + 18.0 * i as f64, series);
+    }
+    svg + "</svg>\n"
+}
+
+/// Returns the mark and the name of a series for a legend.
+pub fn key(x: f64, y: f64, series: &Series) -> String {
+    let class = series.colour.class();
+    format!("<circle class=\"{class}\" cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"4\"/>")
+        + &text(x + 8.0, y + 4.0, "start", &series.name)
+}
+
+/// Returns axes and points without names of the axes; `None` if there is no point.
+pub fn panel(area: Area, series: &[Series]) -> Option<String> {
+    let all = || series.iter().flat_map(Series::drawable);
+    all().next()?;
+    let Area { left, right, top, bottom } = area;
+    let x = Axis::over(all().map(|p| p.x), [left, right]);
+    let y = Axis::over(all().map(|p| p.y), [bottom, top]);
+    let mut svg = String::new();
+    for tick in x.ticks() {
+        svg += &format!("<path class=\"grid\" d=\"M{0:.1} {top}V{bottom}\"/>", x.at(tick));
+        svg += &text(x.at(tick), bottom + 16.0, "middle", &tick.to_string());
+    }
+    for tick in y.ticks() {
+        svg += &format!("<path class=\"grid\" d=\"M{left} {0:.1}H{right}\"/>", y.at(tick));
+        svg += &text(left - 6.0, y.at(tick) + 4.0, "end", &tick.to_string());
+    }
+    svg += &format!("<path class=\"axis\" d=\"M{left} {top}V{bottom}H{right}\"/>\n");
+    series.iter().for_each(|series| svg += &marks(series, &x, &y));
+    Some(svg)
+}
+
+/// Returns the points of a series and the line that joins them.
+fn marks(series: &Series, x: &Axis, y: &Axis) -> String {
+    let class = series.colour.class();
+    let mut svg = String::new();
+    let points: Vec<&Point> = series.drawable().collect();
+    if series.joined && points.len() > 1 {
+        let path: Vec<String> = points.iter().map(|p| format!("{:.1} {:.1}", x.at(p.x), y.at(p.y))).collect();
+        svg += &format!("<path class=\"line {class}\" d=\"M{}\"/>\n", path.join("L"));
+    }
+    for point in points {
+        let (px, py, name) = (x.at(point.x), y.at(point.y), &point.name);
+        svg += &format!(
+            "<circle class=\"{class}\" cx=\"{px:.1}\" cy=\"{py:.1}\" r=\"4\"><title>{}</title></circle>\n",
+            escaped(name)
+        );
+        if !series.joined && !name.is_empty() && series.name.is_empty() {
+            svg += &text(px + 7.0, py + 4.0, "start", name);
+        }
+    }
+    svg
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::series::Colour;
+    use super::*;
+
+    #[test]
+    fn points_that_cannot_be_drawn_are_left_out() {
+        let point = |x, y, name: &str| Point { x, y, name: name.to_owned() };
+        let points = vec![point(1.0, 2.0, "<a>"), point(0.0, 1.0, "b"), point(1.0, f64::NAN, "c")];
+        let series = Series { name: String::new(), colour: Colour::Red, joined: false, points };
+        let svg = scatter("x", "y", &[series]);
+        assert_eq!(svg.matches("<circle").count(), 1);
+        assert!(svg.contains("&lt;a&gt;") && !svg.contains("NaN") && !svg.contains("inf"), "{svg}");
+        assert!(!scatter("x", "y", &[]).contains("<svg"));
+    }
+}
