@@ -94,7 +94,7 @@ pub enum Command {
 #[command(after_help = exit::HELP)]
 pub struct RenderArgs {
     /// Scene: glTF (.glb, .gltf), a mesh (.obj, .ply, .stl), native (.toml) or Mitsuba (.xml), or the name of a
-    /// built-in scene: apartment, cornell, furnace, hall, kitchen, knot, nave
+    /// built-in scene: apartment, cornell, furnace, glass, hall, kitchen, knot, nave, terrace
     pub scene: PathBuf,
     /// Image to write: 32-bit float OpenEXR with metadata, or a tone-mapped PNG alone. `-` is standard output. `####`
     /// or `%04d` in the name stands for the number of `--frame` [default: the scene's name with .exr, in the current
@@ -328,7 +328,7 @@ pub enum VerifyAgainst {
 #[command(after_help = exit::HELP)]
 pub struct InfoArgs {
     /// Scene: glTF (.glb, .gltf), a mesh (.obj, .ply, .stl), native (.toml) or Mitsuba (.xml), or the name of a
-    /// built-in scene: apartment, cornell, furnace, hall, kitchen, knot, nave
+    /// built-in scene: apartment, cornell, furnace, glass, hall, kitchen, knot, nave, terrace
     pub scene: PathBuf,
     /// Print JSON
     #[arg(long)]
