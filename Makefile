@@ -6,14 +6,14 @@ HOST = $(shell rustc -vV | sed -n 's/^host: //p')
 
 .PHONY: help setup build demo test quick studies memory lint doc wheel tarball package-test
 
-help: ## this list
+help: ## print this list
 	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' Makefile | expand -t 16
 
-setup: ## install what a build needs, a C++ compiler and Embree 4, and the denoiser if it can be had
+setup: ## install what a build needs: a C++ compiler, Embree 4 and, if possible, the denoiser
 	@vendor-bindings/embree4-sys/setup.sh
-	@vendor-bindings/oidn/setup.sh || echo "setup: going on without the denoiser: pictures stay noisy" >&2
+	@vendor-bindings/oidn/setup.sh || echo "setup: continuing without the denoiser, so images stay noisy" >&2
 
-build: setup ## target/release/lightsplat
+build: setup ## build target/release/lightsplat
 	$(CARGO) build --release --locked
 	@echo "built $(TARGET_DIR)/release/lightsplat"
 
@@ -22,35 +22,35 @@ demo: build ## render a first scene to out/
 	$(TARGET_DIR)/release/lightsplat render scenes/cornell.toml -o out/cornell.exr
 	@echo "rendered out/cornell.exr and out/cornell.png"
 
-test: setup ## every test but studies
+test: setup ## run all tests except the studies
 	$(CARGO) test --workspace --locked
 
-quick: setup ## the tests that take seconds, not minutes
+quick: setup ## run the tests that take seconds
 	$(CARGO) test --workspace --locked -- --skip slow_
 
-studies: setup ## the tests that take many minutes, which `test` leaves out
+studies: setup ## run the tests that take many minutes
 	$(CARGO) test --workspace --locked -- --ignored
 
 memory: export RUSTC_BOOTSTRAP = 1
 memory: export RUSTFLAGS = -Zsanitizer=address
 memory: export ASAN_OPTIONS = detect_leaks=0:detect_odr_violation=0
-memory: setup ## AddressSanitizer over the tests of rays and shadow rays, in a folder of its own
+memory: setup ## run the tests of rays with AddressSanitizer, in a separate folder
 	CARGO_TARGET_DIR=$(TARGET_DIR)/memory $(CARGO) test -p embree --locked --lib --target $(HOST)
 	CARGO_TARGET_DIR=$(TARGET_DIR)/memory $(CARGO) test -p world --locked --lib --target $(HOST) -- shadow::
 
-wheel: ## dist/lightsplat-VERSION-...whl, which pip installs on any x86-64 Linux; takes some minutes
+wheel: ## build dist/lightsplat-VERSION-...whl, which pip installs on any x86-64 Linux; takes some minutes
 	@packaging/build wheel
 
-tarball: ## dist/lightsplat-VERSION-x86_64-linux.tar.xz, the program and its libraries in one folder
+tarball: ## build dist/lightsplat-VERSION-x86_64-linux.tar.xz, the program and its libraries in one folder
 	@packaging/build tarball
 
 package-test: ## make both packages, install them in fresh folders, render from both
 	@packaging/build wheel tarball
 	python3 packaging/test_packages.py
 
-lint: setup ## format and clippy, warnings denied
+lint: setup ## check format and clippy; warnings are errors
 	$(CARGO) fmt --all --check
 	$(CARGO) clippy --workspace --all-targets --locked -- -D warnings
 
-doc: setup ## the documentation, warnings denied
+doc: setup ## build the documentation; warnings are errors
 	RUSTDOCFLAGS="-D warnings" $(CARGO) doc --workspace --no-deps --document-private-items --locked

@@ -9,6 +9,7 @@ use super::method_args::MethodArgs;
 use super::plan_args::{PlanArgs, Quality};
 use super::png_args::{PngArgs, ToneArgs};
 use super::reading_args::ReadingArgs;
+use super::short_help::shortened;
 use super::values::{
     Bytes, Crop, ImageFormat, Loudness, ProgressMode, Resolution, counted, feature, q_scale,
 };
@@ -20,9 +21,9 @@ use std::ffi::OsString;
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
-/// Global illumination by lightcuts over Intel Embree, with a path-traced reference.
+/// Render glTF, mesh, TOML and Mitsuba scenes with global illumination to OpenEXR and PNG.
 #[derive(Debug, Parser)]
-#[command(name = "lightsplat", version, about, after_help = exit::HELP, arg_required_else_help = true)]
+#[command(name = "lightsplat", version, about, after_long_help = exit::HELP, arg_required_else_help = true)]
 pub struct Cli {
     /// The command.
     #[command(subcommand)]
@@ -56,7 +57,7 @@ impl Cli {
             true => arg,
             false => arg.allow_negative_numbers(true),
         };
-        Cli::command().mut_subcommands(|command| command.mut_args(negative))
+        Cli::command().mut_subcommands(|command| shortened(command.mut_args(negative)))
     }
 }
 
@@ -65,43 +66,43 @@ impl Cli {
 pub enum Command {
     /// Render a scene to OpenEXR and PNG
     Render(Box<RenderArgs>),
-    /// Render the frames of a walk-through along the camera path of a scene
+    /// Render the frames of a walk, the camera animation of a scene
     Walk(Box<WalkArgs>),
-    /// Render the images and walks that job files list, and read each scene once
+    /// Render the images and walks that job files list
     Batch(BatchArgs),
     /// Print what a scene contains and requires
     Info(InfoArgs),
     /// Denoise an existing image
     Denoise(DenoiseFileArgs),
-    /// Make a PNG of an OpenEXR image, with another exposure or view
+    /// Convert an OpenEXR image to PNG, with another exposure or view
     Develop(DevelopArgs),
-    /// Merge images of one view with different seeds into one with less noise
+    /// Merge images of different seeds into one image with less noise
     Merge(MergeArgs),
-    /// Put the frames of a walk on a contact sheet
+    /// Make a contact sheet of the frames of a walk
     Sheet(SheetArgs),
-    /// Compare an image with a reference, and show where they differ
+    /// Measure how an image differs from a reference, and show where
     Compare(CompareArgs),
-    /// Benchmark parts of the renderer
+    /// Benchmark the speed and the error of the renderer
     Bench(BenchArgs),
     /// Render a built-in scene to lightsplat-demo.exr and lightsplat-demo.png in the current folder
     Demo,
-    /// Print a completion script or the man page
+    /// Print shell completions or the man page
     Generate(GenerateArgs),
 }
 
 /// Options of `render`.
 #[derive(Debug, Args)]
-#[command(after_help = exit::HELP)]
+#[command(after_long_help = exit::HELP)]
 pub struct RenderArgs {
-    /// Scene: glTF (.glb, .gltf), a mesh (.obj, .ply, .stl), native (.toml) or Mitsuba (.xml), or the name of a
-    /// built-in scene: apartment, cornell, furnace, glass, hall, kitchen, knot, nave, terrace
+    /// Scene file: glTF (.glb, .gltf), mesh (.obj, .ply, .stl), lightsplat TOML (.toml) or Mitsuba (.xml). The name of
+    /// a built-in scene works, too: apartment, cornell, furnace, glass, hall, kitchen, knot, nave, terrace
     pub scene: PathBuf,
-    /// Image to write: 32-bit float OpenEXR with metadata, or a tone-mapped PNG alone. `-` is standard output. `####`
-    /// or `%04d` in the name stands for the number of `--frame` [default: the scene's name with .exr, in the current
-    /// folder]
+    /// Image to write. FILE.exr holds 32-bit float radiance, and FILE.png is written with it. FILE.png alone is
+    /// tone-mapped. `-` is standard output. `####` or `%04d` stands for the number of --frame [default: the name of the
+    /// scene with .exr, in the current folder]
     #[arg(short, long, value_name = "FILE.exr|FILE.png|-")]
     pub output: Option<PathBuf>,
-    /// Format of standard output
+    /// Format of the image on standard output
     #[arg(long, value_enum, value_name = "FORMAT", default_value_t)]
     pub format: ImageFormat,
     /// The method and its settings.
@@ -110,8 +111,8 @@ pub struct RenderArgs {
     /// Options of all commands that render images.
     #[command(flatten)]
     pub picture: PictureArgs,
-    /// Use the camera of this frame of the camera path, counted from 1. A glTF model takes its pose of this frame, at
-    /// 24 frames per second
+    /// Frame of the camera path to render, counted from 1. A glTF model takes its pose at this frame, at 24 frames per
+    /// second
     #[arg(short, long, value_name = "N", value_parser = counted)]
     pub frame: Option<NonZeroUsize>,
     /// The tone-mapped image.
@@ -131,39 +132,41 @@ pub struct RenderArgs {
 /// Options of all commands that render images.
 #[derive(Debug, Args)]
 pub struct PictureArgs {
-    /// Number of threads [default: number of processors]; the image does not depend on it
+    /// Number of threads. The image does not depend on it [default: number of processors]
     #[arg(short, long, value_parser = clap::value_parser!(u32).range(1..=4096))]
     pub threads: Option<u32>,
-    /// Width and height in pixels, instead of those in the scene: WxH; W or xH alone keeps the aspect ratio; N% scales
+    /// Image size in pixels. W or xH alone keeps the aspect ratio of the scene, N% scales its size [default: from the
+    /// scene]
     #[arg(short, long, visible_alias = "size", value_name = "WxH|W|N%")]
     pub resolution: Option<Resolution>,
-    /// Render only this rectangle, in pixels from the top-left corner. With path and lightcuts its pixels equal those
-    /// of the full image. With other methods they differ by about 1 %
+    /// Render only this rectangle, in pixels from the top-left corner. With path and lightcuts, the pixels equal the
+    /// pixels of the full image. With other methods, they differ by about 1 %
     #[arg(long, value_name = "X,Y,W,H")]
     pub crop: Option<Crop>,
-    /// Additional layers to write, about the visible surfaces; mirrors and glass show the surfaces behind them
+    /// Additional layers that describe the visible surfaces. At mirrors and glass, they describe the reflected or
+    /// refracted surface
     #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = feature())]
     pub aov: Vec<Feature>,
     /// Denoising.
     #[command(flatten)]
     pub denoise: DenoiseArgs,
-    /// Skip images whose files are complete and come from the same scene, settings and program version; continue
-    /// path-traced images that were interrupted
+    /// Skip complete images of the same scene, settings and program version. Continue interrupted images of --method
+    /// path
     #[arg(long)]
     pub resume: bool,
-    /// Fail, before rendering, if a file exists that the run would replace
+    /// Fail before rendering if an output file already exists
     #[arg(long, conflicts_with = "resume")]
     pub no_overwrite: bool,
-    /// Write no times and no number of threads, so that equal renders give equal files
+    /// Leave times and the number of threads out of all files, so that equal renders give equal files
     #[arg(long)]
     pub reproducible: bool,
-    /// Form of the messages on standard error
+    /// Form of progress and messages on standard error
     #[arg(long, value_enum, default_value_t = ProgressMode::Auto)]
     pub progress: ProgressMode,
-    /// Print errors alone
+    /// Print only errors
     #[arg(short, long, conflicts_with = "verbose")]
     quiet: bool,
-    /// Print a line per stage, with its seconds
+    /// Print a line with the seconds of each stage
     #[arg(short, long)]
     verbose: bool,
     /// Reading of the scene.
@@ -184,39 +187,39 @@ impl PictureArgs {
 
 /// Options of `walk`.
 #[derive(Debug, Args)]
-#[command(after_help = exit::HELP)]
+#[command(after_long_help = exit::HELP)]
 pub struct WalkArgs {
-    /// Scene with a camera path: native (.toml), or glTF (.glb, .gltf) with an animated camera
+    /// Scene with a camera path: lightsplat TOML (.toml), or glTF (.glb, .gltf) with an animated camera
     pub scene: PathBuf,
-    /// Images to write, with a placeholder for the number of the frame: f.####.exr or f.%04d.exr
+    /// Images to write. `####` or `%04d` stands for the number of the frame: f.####.exr or f.%04d.exr
     #[arg(short, long, value_name = "NAME.####.exr")]
     pub output: FileNames,
-    /// Frames to render, counted from 1: 7, 1-10, 1-100x5 (every fifth), or a list of such ranges [default: all]
+    /// Frames to render, counted from 1: 7, 1-10, 1-100x5 (every fifth), or a list of ranges [default: all]
     #[arg(short, long, value_name = "LIST")]
     pub frames: Option<FrameList>,
-    /// Render the frames in chunks of N, which begin without records. Separate runs, on any machines, may render one
-    /// chunk each and give the same images [default: one chunk]
+    /// Render the frames in chunks of N. Each chunk starts without records. Several machines may render one chunk each,
+    /// and the images stay the same [default: one chunk]
     #[arg(long, value_name = "N", value_parser = counted)]
     pub chunk: Option<NonZeroUsize>,
-    /// Number of frames for which a record stays that lights nothing in view
+    /// Number of frames for which a record is kept while it lights nothing in view
     #[arg(long, value_name = "FRAMES", default_value_t = RetentionLimits::default().idle_frames)]
     pub idle_frames: u32,
-    /// Memory limit of the records that stay between frames, like 512M or 2G [default: 1G]; records that were not used
-    /// for the longest time are removed first
+    /// Memory limit of the records kept between frames, like 512M or 2G. Records unused for the longest time are
+    /// removed first [default: 1G]
     #[arg(long, value_name = "BYTES", allow_hyphen_values = true)]
     pub memory_limit: Option<Bytes>,
-    /// Sample the direct light of every pixel in every frame, instead of reprojecting it from the previous frame:
-    /// smaller errors, longer frames
+    /// Sample the direct light of every pixel in every frame, instead of reprojecting it from the previous frame.
+    /// Errors are smaller, and frames take longer
     #[arg(long)]
     pub no_reprojection: bool,
-    /// Quantisation scale of the visibility model. The model allows differences between records where the previous
-    /// frame has contrasts: 4 allows about 2 % on plain surfaces, 0 allows 2 % everywhere
+    /// Quantisation scale of the visibility model. Records may differ more where contrasts of the previous frame hide
+    /// the difference. 4 allows about 2 % on plain surfaces. 0 allows 2 % everywhere
     #[arg(long, value_name = "SCALE", value_parser = q_scale, default_value_t = Q_SCALE)]
     pub q_scale: f32,
     /// The method and its settings.
     #[command(flatten)]
     pub method: MethodArgs,
-    /// Named settings; settings given on the command line are not changed
+    /// Named settings. Settings given on the command line are not changed
     #[arg(long, value_enum)]
     pub quality: Option<Quality>,
     /// Options of all commands that render images.
@@ -235,34 +238,35 @@ pub struct WalkArgs {
 
 /// Options of `batch`.
 #[derive(Debug, Args)]
-#[command(after_help = exit::HELP)]
+#[command(after_long_help = exit::HELP)]
 pub struct BatchArgs {
-    /// Job files (.toml), which list images and walks, each with the options of its command
+    /// Job files (.toml). Each lists images and walks, with the options of their commands
     #[arg(required = true)]
     pub jobs: Vec<PathBuf>,
-    /// Print the number, the scene and the output of each entry, and render nothing
+    /// Print the number, scene and output of each entry, and render nothing
     #[arg(long, conflicts_with = "only")]
     pub list: bool,
-    /// Render only these entries, counted from 1 over all job files: 7, 1-10, or a list of such ranges
+    /// Render only these entries, counted from 1 over all job files: 7, 1-10, or a list of ranges
     #[arg(long, value_name = "LIST")]
     pub only: Option<FrameList>,
-    /// Skip images and frames whose files are complete and come from the same scene, settings and program version
+    /// Skip complete images and frames of the same scene, settings and program version
     #[arg(long)]
     pub resume: bool,
-    /// Number of threads [default: number of processors]; the images do not depend on it
+    /// Number of threads. The images do not depend on it [default: number of processors]
     #[arg(long, value_parser = clap::value_parser!(u32).range(1..=4096))]
     pub threads: Option<u32>,
-    /// Form of the messages on standard error
+    /// Form of progress and messages on standard error
     #[arg(long, value_enum, default_value_t = ProgressMode::Auto)]
     pub progress: ProgressMode,
 }
 
 /// Options of `merge`.
 #[derive(Debug, Args)]
-#[command(after_help = exit::HELP)]
+#[command(after_long_help = exit::HELP)]
 pub struct MergeArgs {
-    /// Images (OpenEXR) of one scene, view, method and settings with different seeds; each is weighted by its number of
-    /// samples, per pixel if it was interrupted. The layer `noisy` of denoised images is merged
+    /// OpenEXR images of one scene, view, method and settings, with different seeds. Images are weighted by their
+    /// number of samples, interrupted images by the samples of each pixel. If images are denoised, their layers `noisy`
+    /// are merged
     #[arg(required = true, num_args = 2..)]
     pub inputs: Vec<PathBuf>,
     /// Image to write
@@ -275,21 +279,21 @@ pub struct MergeArgs {
 
 /// Options of `sheet`.
 #[derive(Debug, Args)]
-#[command(after_help = exit::HELP)]
+#[command(after_long_help = exit::HELP)]
 pub struct SheetArgs {
-    /// Names of the frames, as in walk --output; the sheet shows their PNG files
+    /// Names of the frames, as in --output of walk. The sheet shows their PNG files
     #[arg(value_name = "NAME.####.exr")]
     pub names: FileNames,
-    /// Frames to show: 7, 1-10, 1-100x5 (every fifth), or a list of such ranges; all of them must exist
+    /// Frames to show: 7, 1-10, 1-100x5 (every fifth), or a list of ranges. All of them must exist
     #[arg(long, value_name = "LIST")]
     pub frames: FrameList,
-    /// Sheet to write
+    /// Contact sheet to write
     #[arg(short, long, value_name = "FILE.png")]
     pub output: PathBuf,
     /// Number of frames per row [default: chosen so that the sheet is about 16:9]
     #[arg(long, value_parser = clap::value_parser!(u32).range(1..))]
     pub columns: Option<u32>,
-    /// Width of a frame on the sheet in pixels; frames are not enlarged
+    /// Width of a frame on the sheet, in pixels. Frames are not enlarged
     #[arg(long, default_value_t = 256, value_parser = clap::value_parser!(u32).range(1..))]
     pub width: u32,
 }
@@ -301,15 +305,16 @@ pub struct SheetArgs {
     group(ArgGroup::new("measured").args(["verify", "error"]).multiple(true))
 )]
 pub struct VerifyArgs {
-    /// Path-trace about this many pixels and report the error of the image: bias, RMS and 95th percentile, each with
-    /// its 95 % confidence interval
+    /// Report the error of the image, measured by path tracing about this many pixels. The report gives bias, RMS error
+    /// and 95th percentile, each with a 95 % confidence interval
     #[arg(long, value_name = "PIXELS", value_parser = clap::value_parser!(u32).range(16..))]
     pub verify: Option<u32>,
-    /// Estimand of a pixel [default: pixels for path and for cache with sampled direct light, otherwise eye-samples]
+    /// Value that counts as correct for a pixel [default: pixels for path and for cache with sampled direct light,
+    /// otherwise eye-samples]
     #[arg(long, value_enum, requires = "measured")]
     pub verify_against: Option<VerifyAgainst>,
-    /// Maximum number of paths per pixel [default: 4096]; the report says how many pixels would need more to be known
-    /// to 1 %
+    /// Maximum number of paths per measured pixel. The report says how many pixels need more paths for an uncertainty
+    /// of 1 % [default: 4096]
     #[arg(long, value_name = "SPP", requires = "measured", value_parser = clap::value_parser!(u32).range(64..))]
     pub verify_samples: Option<u32>,
 }
@@ -325,10 +330,10 @@ pub enum VerifyAgainst {
 
 /// Options of `info`.
 #[derive(Debug, Args)]
-#[command(after_help = exit::HELP)]
+#[command(after_long_help = exit::HELP)]
 pub struct InfoArgs {
-    /// Scene: glTF (.glb, .gltf), a mesh (.obj, .ply, .stl), native (.toml) or Mitsuba (.xml), or the name of a
-    /// built-in scene: apartment, cornell, furnace, glass, hall, kitchen, knot, nave, terrace
+    /// Scene file: glTF (.glb, .gltf), mesh (.obj, .ply, .stl), lightsplat TOML (.toml) or Mitsuba (.xml). The name of
+    /// a built-in scene works, too: apartment, cornell, furnace, glass, hall, kitchen, knot, nave, terrace
     pub scene: PathBuf,
     /// Print JSON
     #[arg(long)]
@@ -340,22 +345,22 @@ pub struct InfoArgs {
 
 /// Options of `compare`.
 #[derive(Debug, Args)]
-#[command(after_help = exit::HELP)]
+#[command(after_long_help = exit::HELP)]
 pub struct CompareArgs {
-    /// Image to judge (OpenEXR)
+    /// OpenEXR image to judge
     pub test: PathBuf,
-    /// Reference of the same scene and size (OpenEXR); it also sets the exposure
+    /// OpenEXR reference of the same scene and size. Both images are shown with the exposure of the reference
     pub reference: PathBuf,
-    /// Write the image, the reference and their difference side by side
+    /// PNG file to write, with the image, the reference and their difference side by side
     #[arg(long, value_name = "FILE.png")]
     pub heatmap: Option<PathBuf>,
     /// Error measure of the heatmap
     #[arg(long, value_enum, default_value_t = HeatmapError::Flip, requires = "heatmap")]
     pub heatmap_of: HeatmapError,
-    /// Variance of the pixels of the image [default: its layer `variance`, if there is one]
+    /// OpenEXR file with the variance of the image [default: the layer `variance` of the image, if present]
     #[arg(long, value_name = "FILE.exr")]
     pub variance_a: Option<PathBuf>,
-    /// Variance of the pixels of the reference [default: its layer `variance`, if there is one]
+    /// OpenEXR file with the variance of the reference [default: the layer `variance` of the reference, if present]
     #[arg(long, value_name = "FILE.exr")]
     pub variance_b: Option<PathBuf>,
     /// Print JSON
@@ -375,7 +380,7 @@ pub enum StatsFormat {
 /// Error measure of a heatmap.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum HeatmapError {
-    /// Perceived difference, 0 to 1
+    /// Perceived difference (FLIP), 0 to 1
     Flip,
     /// Relative error of radiance, clipped at 1
     Relative,

@@ -62,7 +62,7 @@ fn chosen(entries: Vec<JobEntry>, only: &FrameList) -> Result<Vec<JobEntry>, Fai
     if only.last() > count {
         let last = only.last();
         return Err(Failure::usage(anyhow!(
-            "--only: there is no entry {last}; the job files have {count}, which --list prints"
+            "--only: there is no entry {last}; the job files have {count} entries, which --list prints"
         )));
     }
     let numbers: BTreeSet<usize> = only.iter().collect();

@@ -23,9 +23,9 @@ pub fn run(args: BenchArgs) -> Result<(), Failure> {
     };
     let remedy = match (needs_scene, args.scenes.len()) {
         (true, 1) | (false, 0) => None,
-        (true, 0) => Some("name a scene behind it"),
-        (true, _) => Some("name one scene only"),
-        (false, _) => Some("leave the scene out"),
+        (true, 0) => Some("add the scene to measure: SCENE is missing"),
+        (true, _) => Some("give one scene only"),
+        (false, _) => Some("leave the scene out, the benchmark needs none"),
     };
     if let Some(remedy) = remedy {
         return Err(Failure::usage(anyhow!("bench {name}: {remedy}")));

@@ -9,29 +9,29 @@ use std::path::PathBuf;
 
 /// The defaults are the benchmarks' own; a test holds the text to them.
 #[derive(Debug, Args)]
-#[command(after_help = list())]
+#[command(after_help = list(), after_long_help = format!("{}\n{}", list(), exit::HELP))]
 pub struct BenchArgs {
     /// Name of the benchmark
     #[arg(value_parser = PossibleValuesParser::new(REGISTRY.iter().map(|b| b.name)), hide_possible_values = true)]
     pub benchmark: String,
-    /// Scenes: native (.toml), Mitsuba (.xml) or glTF (.glb, .gltf); for those that need them. Studies also take
-    /// names of scenes in --scenes
+    /// Scenes to measure, if the benchmark needs any: lightsplat TOML, Mitsuba or glTF. Studies also accept names of
+    /// scenes in --scenes
     #[arg(value_name = "SCENE")]
     pub scenes: Vec<PathBuf>,
-    /// Threads where all are used [default: all processors]
+    /// Number of threads of multi-threaded cases [default: number of processors]
     #[arg(long, value_parser = clap::value_parser!(u32).range(1..=4096))]
     pub threads: Option<u32>,
-    /// Samples of every case, taken in turns; runs of every picture, of which the fastest counts; seeds, for
-    /// `extremes` [default: 7; studies: 1; extremes: 4]
+    /// Number of samples per case. A study renders each image this often, and the fastest run counts. `extremes` takes
+    /// the number of seeds [default: 7; studies: 1; extremes: 4]
     #[arg(long, value_parser = clap::value_parser!(u32).range(1..=1000))]
     pub repeats: Option<u32>,
-    /// How long a sample lasts at least, about [default: 0.05]
+    /// Approximate minimum duration of a sample in seconds [default: 0.05]
     #[arg(long, value_name = "SECONDS", value_parser = parse_seconds)]
     pub seconds: Option<f64>,
-    /// Write everything, every sample included
+    /// Write all results, including every sample
     #[arg(long, value_name = "FILE")]
     pub export_json: Option<PathBuf>,
-    /// Write a line for every case
+    /// Write one line per case
     #[arg(long, value_name = "FILE")]
     pub export_csv: Option<PathBuf>,
     /// Write the tables
@@ -45,30 +45,30 @@ pub struct BenchArgs {
     pub study: StudyArgs,
 }
 
-/// Options of benchmarks that render whole pictures.
+/// Options of benchmarks that render whole images.
 #[derive(Clone, Debug, Default, Args, PartialEq)]
 #[command(next_help_heading = "Studies")]
 pub struct StudyArgs {
-    /// Folder for the page, the table and all that is rendered; pictures already in it are not rendered again
-    /// [default: out/NAME]
+    /// Folder for the page, the table and the images. Images that are already there are not rendered again [default:
+    /// out/NAME]
     #[arg(short, long, value_name = "FOLDER")]
     pub output: Option<PathBuf>,
     /// Folder of the scenes that are given by name [default: scenes]
     #[arg(long = "scenes", value_name = "FOLDER")]
     pub scene_folder: Option<PathBuf>,
-    /// Width and height of pictures [default: the study's]
+    /// Width and height of images [default: from the study]
     #[arg(long, value_name = "WxH")]
     pub resolution: Option<Resolution>,
-    /// Paths a pixel of references, half of them in each of two independent pictures [default: 1024]
+    /// Paths per pixel of a reference, half of them in each of two independent images [default: 1024]
     #[arg(long, value_name = "SPP", value_parser = clap::value_parser!(u32).range(2..))]
     pub reference_spp: Option<u32>,
-    /// Seconds after which references get no more paths [default: 1800]
+    /// Maximum seconds of path tracing per reference [default: 1800]
     #[arg(long, value_name = "SECONDS", value_parser = parse_seconds)]
     pub reference_seconds: Option<f64>,
-    /// Points of the designed sample over all settings, for `trade` [default: 32]
+    /// Number of combinations of settings that `trade` samples [default: 32]
     #[arg(long, value_name = "N")]
     pub samples: Option<u32>,
-    /// Vary only this setting in `trade`, or take only this to its `extremes`, once for each; a wrong name lists them
+    /// Vary only this setting, in `trade` or `extremes`. May be repeated. A wrong name prints the list of settings
     #[arg(long = "knob", value_name = "NAME")]
     pub knobs: Vec<String>,
     /// Figures of other programs for the chart of `race`, a JSON object per line (see docs/benchmarks.md)
@@ -86,7 +86,7 @@ fn parse_seconds(text: &str) -> Result<f64, String> {
 /// Returns the list of benchmarks for `--help`.
 fn list() -> String {
     let line = |b: &Benchmark| format!("  {:<18}{}\n", format!("{}{}", b.name, b.operand()), b.about);
-    format!("Benchmarks:\n{}\n{}", REGISTRY.iter().map(line).collect::<String>(), exit::HELP)
+    format!("Benchmarks:\n{}", REGISTRY.iter().map(line).collect::<String>())
 }
 
 #[cfg(test)]

@@ -8,8 +8,8 @@ use std::fs;
 const HEAD: &str = "\
 # Command line
 
-This page lists every command and option. `lightsplat COMMAND -h` shows the options that most people need, `--help` all.
-It is made from the definition of the options: `UPDATE_DOCS=1 cargo test -p cli --lib cli_page`.
+This page lists every command and option. `lightsplat COMMAND -h` shows the options that most people need. `--help` shows
+all options. To update the page, run `UPDATE_DOCS=1 cargo test -p cli --lib cli_page`.
 
 | exit code | meaning |
 |--:|---|
@@ -46,14 +46,21 @@ fn section(command: &Command, parent: &str, level: &str) -> String {
         let [value, ..] = arg.get_value_names().unwrap_or_default() else { continue };
         text += &format!("\n- `{value}`: {}.{}\n", help(arg), values(arg));
     }
-    let mut heading = None;
-    for arg in command.get_arguments().filter(|arg| !arg.is_positional() && is_own(arg)) {
-        let of = arg.get_help_heading().map(str::to_owned);
-        if of != heading {
-            text += &format!("\n**{}**\n", of.as_deref().unwrap_or("Options"));
-            heading = of;
+    let mut headings: Vec<Option<&str>> = Vec::new();
+    let options = || command.get_arguments().filter(|arg| !arg.is_positional() && is_own(arg));
+    for heading in options().map(Arg::get_help_heading) {
+        if !headings.contains(&heading) {
+            headings.push(heading);
         }
-        text += &option(arg);
+    }
+    // Options that most people need come first.
+    let is_rare = |heading: &Option<&str>| {
+        options().filter(|arg| arg.get_help_heading() == *heading).all(Arg::is_hide_short_help_set)
+    };
+    headings.sort_by_key(is_rare);
+    for heading in headings {
+        text += &format!("\n**{}**\n", heading.unwrap_or("Options"));
+        text.extend(options().filter(|arg| arg.get_help_heading() == heading).map(option));
     }
     let subs = command.get_subcommands().filter(|sub| sub.get_name() != "help");
     text + &subs.map(|sub| section(sub, &name, &format!("{level}#"))).collect::<String>()
@@ -84,7 +91,7 @@ fn help(arg: &Arg) -> String {
         arg.get_default_values().iter().map(|value| value.to_string_lossy()).collect::<Vec<_>>().join(",");
     let is_flag = !arg.get_action().takes_values();
     let said = if default.is_empty() || is_flag { String::new() } else { format!(" [default: {default}]") };
-    text.trim_end_matches('.').replace('\n', " ").replace('<', "&lt;").replace('|', "\\|") + &said
+    text.trim_end_matches('.').replace('\n', " ").replace('|', "\\|") + &said
 }
 
 /// Returns the possible values of an argument.

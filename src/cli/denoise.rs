@@ -20,7 +20,7 @@ pub fn run(args: DenoiseFileArgs) -> Result<(), Failure> {
     file.check_whole().map_err(Failure::input)?;
     if let Some(library) = file.metadata().text("denoised").filter(|library| *library != "false") {
         return Err(Failure::input(anyhow!(
-            "{} was denoised before, with {library}; denoise the noisy image",
+            "{} is already denoised, with {library}; denoise the noisy image instead",
             input.display()
         )));
     }

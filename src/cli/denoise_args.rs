@@ -10,15 +10,15 @@ use std::path::PathBuf;
 /// Options of `render` and `walk` for denoising.
 #[derive(Clone, Copy, Debug, Default, Args)]
 pub struct DenoiseArgs {
-    /// Denoise with Open Image Denoise 2, guided by albedo and normals; the default for methods that leave noise. If
-    /// the library is missing, a warning is printed and the image stays noisy
+    /// Denoise with Open Image Denoise 2, guided by albedo and normals. This is the default of methods that leave
+    /// noise. If the library is missing, lightsplat prints a warning and the image stays noisy
     #[arg(long, overrides_with = "no_denoise")]
     denoise: bool,
     /// Do not denoise
     #[arg(long, overrides_with = "denoise")]
     no_denoise: bool,
-    /// Quality of denoising [default: high for walks; lower for stills if high would take a large part of the work, as
-    /// counted]
+    /// Quality of denoising. For stills, the default is lower if high would take a large part of the work [default:
+    /// high]
     #[arg(long, value_enum, value_name = "QUALITY")]
     denoise_quality: Option<NamedQuality>,
     /// Keep the noisy image in the layer `noisy`
@@ -29,9 +29,12 @@ pub struct DenoiseArgs {
 /// Quality of denoising.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 enum NamedQuality {
+    /// Best quality
     #[default]
     High,
+    /// Between high and fast
     Balanced,
+    /// Fastest
     Fast,
 }
 
@@ -70,21 +73,21 @@ impl DenoiseArgs {
 
 /// Options of `denoise`.
 #[derive(Debug, Args)]
-#[command(after_help = exit::HELP)]
+#[command(after_long_help = exit::HELP)]
 pub struct DenoiseFileArgs {
-    /// Image to denoise (OpenEXR); layers of albedo and normals guide the denoiser, if they have the names of
-    /// lightsplat, Blender, Mitsuba, pbrt or Arnold
+    /// OpenEXR image to denoise. Layers of albedo and normals guide the denoiser. Names of lightsplat, Blender,
+    /// Mitsuba, pbrt and Arnold are known
     pub input: PathBuf,
-    /// Image to write: the input with its colour denoised [default: the input with the extension .denoised.exr]
+    /// Image to write, with denoised colour [default: the input with the extension .denoised.exr]
     #[arg(short, long, value_name = "FILE.exr")]
     pub output: Option<PathBuf>,
-    /// Quality of denoising; it makes a difference if the guides are free of noise
+    /// Quality of denoising. The levels differ only if the guides are free of noise
     #[arg(long, value_enum, value_name = "QUALITY", default_value_t)]
     quality: NamedQuality,
     /// Keep the noisy colour in the layer `noisy`
     #[arg(long)]
     pub keep_noisy: bool,
-    /// Number of threads [default: number of processors]; the image does not depend on it
+    /// Number of threads. The image does not depend on it [default: number of processors]
     #[arg(long, value_parser = clap::value_parser!(u32).range(1..=4096))]
     pub threads: Option<u32>,
     /// The tone-mapped image.

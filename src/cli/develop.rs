@@ -10,9 +10,9 @@ use std::path::PathBuf;
 
 /// Options of `develop`.
 #[derive(Debug, Args)]
-#[command(after_help = exit::HELP)]
+#[command(after_long_help = exit::HELP)]
 pub struct DevelopArgs {
-    /// Image to show (OpenEXR), of lightsplat or another renderer
+    /// OpenEXR image to convert, from lightsplat or another renderer
     pub input: PathBuf,
     /// Image to write [default: the input with the extension .png]
     #[arg(short, long, value_name = "FILE.png")]

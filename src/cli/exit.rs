@@ -23,11 +23,19 @@ pub const INTERRUPTED: u8 = 75;
 pub const ABORTED: u8 = 130;
 
 /// Text of `--help` about exit codes.
-pub const HELP: &str = "Exit codes: 0 success; 1 rendering failed; 2 invalid arguments, or the scene lacks what they ask \
-for; 3 invalid scene or image; 4 the result cannot be written; 5 some images of a batch failed, the others are \
-complete; 75 stopped by a signal, may be started again (a still is written as far as it is rendered and marked as \
-partial; nothing is written while planning or before the first pixel; frames of a walk are complete or not written); \
-130 stopped at once by a second signal.";
+pub const HELP: &str = "\
+Exit codes:
+    0  success
+    1  rendering failed
+    2  invalid arguments, or the scene lacks what they ask for
+    3  invalid scene or image
+    4  the result cannot be written
+    5  some images of a batch failed, the others are complete
+   75  stopped by a signal, may be started again
+  130  stopped at once by a second signal
+
+A still that is stopped by a signal is written as a partial image. If no pixel is rendered yet, nothing is written.
+Frames of a walk are complete or absent.";
 
 /// Reason why a run failed, with its exit code.
 #[derive(Debug)]

@@ -74,7 +74,7 @@ impl RenderJob {
         args.picture.denoise.check(goal.denoises())?;
         if args.picture.reproducible && args.plan.time.is_some() {
             return Err(Failure::usage(anyhow!(
-                "--reproducible does not go with --time, whose settings differ from run to run; use --quality or --error"
+                "--reproducible excludes --time, whose settings differ between runs; use --quality or --error"
             )));
         }
         Ok(RenderJob {

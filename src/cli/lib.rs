@@ -41,6 +41,7 @@ mod progress;
 mod reading_args;
 mod render;
 mod sheet;
+mod short_help;
 mod still_files;
 mod study;
 mod talk;

@@ -35,17 +35,17 @@ pub fn run(args: MergeArgs) -> Result<(), Failure> {
         let refuse = |reason: String| Err(Failure::input(anyhow!("{}: {reason}", path.display())));
         let Some(spp) = own.number("spp").filter(|spp| *spp > 0.0) else {
             return refuse(
-                "it does not state its number of samples; merge images of lightsplat only".to_owned(),
+                "the file does not state its number of samples; merge only images of lightsplat".to_owned(),
             );
         };
         let first = args.inputs[0].display();
         if let Some(difference) = difference((&files[0].1, &facts[0]), (file, own)) {
-            return refuse(format!("its {difference} differs from that of {first}"));
+            return refuse(format!("its {difference} differs from {first}"));
         }
         for seed in own_seeds(own) {
             if seeds.contains(&seed) {
                 return refuse(format!(
-                    "an earlier image has seed {seed}, too; render one of them with another --seed"
+                    "another image also has seed {seed}; render one of the two with another --seed"
                 ));
             }
             seeds.push(seed);
@@ -93,15 +93,15 @@ fn noisy(path: &Path) -> Result<ExrFile, Failure> {
     let refuse = |reason: &str| Err(Failure::input(anyhow!("{}: {reason}", path.display())));
     if facts.text("partial") == Some("true") && file.numbers(SAMPLES).is_none() {
         return refuse(
-            "its rendering was interrupted, and it does not state the samples of its pixels, as images of --method path \
-             do; render the rest with the same command and --resume",
+            "its rendering was interrupted, and it lacks the samples of each pixel, which images of --method path have; \
+             render the rest with the same command and --resume",
         );
     }
     PartialImage::remove_squares(&mut file);
     if facts.text("denoised").is_some_and(|library| library != "false") {
         let Ok(noisy) = file.layer(NOISY) else {
             return refuse(
-                "it is denoised, and merging does not remove the errors of the denoiser; render it with --no-denoise or \
+                "the image is denoised, and merging does not remove errors of the denoiser; render it with --no-denoise or \
                  --keep-noisy, and denoise the merged image with `lightsplat denoise`",
             );
         };
@@ -146,7 +146,7 @@ fn difference(a: (&ExrFile, &Metadata), b: (&ExrFile, &Metadata)) -> Option<&'st
     let differs = [
         ("scene", a.1.text("scene_hash") != b.1.text("scene_hash")),
         ("camera or frame", a.0.camera() != b.0.camera() || a.1.number("frame") != b.1.number("frame")),
-        ("film or crop", a.0.window() != b.0.window()),
+        ("size or crop", a.0.window() != b.0.window()),
         ("method", a.1.text("method") != b.1.text("method")),
         ("sharpening, which interrupted images lack,", a.1.text("sharpened") != b.1.text("sharpened")),
         ("setting, besides --seed and --spp,", settings(a.1) != settings(b.1)),

@@ -12,7 +12,7 @@ const AUTO: &str = "auto";
 
 /// Description of [`AUTO`] for `--help`.
 const ABOUT_AUTO: &str =
-    "cache, or denoised path tracing if a few pixels show that it needs less work for the same quality";
+    "Cache or denoised path tracing: a test of a few pixels finds which needs less work for the same quality";
 
 /// Settings that do not rule out a method.
 const OF_ANY_METHOD: [&str; 2] = ["seed", "max_depth"];
@@ -118,15 +118,18 @@ impl MethodSetting {
         self.defaults.iter().map(|(method, _)| method.name()).collect()
     }
 
-    /// Returns the most common default, followed by the other defaults with their methods.
+    /// Returns the default of the first method, followed by each other default with its methods.
     fn default(&self) -> String {
-        let count = |text: &str| self.defaults.iter().filter(|(_, other)| other == text).count();
-        // `max_by_key` finds the last maximum. So the first of equally common defaults comes last.
-        let most = self.defaults.iter().rev().map(|(_, text)| text).max_by_key(|text| count(text));
-        let Some(most) = most else { return String::new() };
-        let others = self.defaults.iter().filter(|(_, text)| text != most);
-        let others = others.map(|(method, text)| format!(", {text} for {}", method.name()));
-        most.clone() + &others.collect::<String>()
+        let mut groups: Vec<(&str, Vec<&str>)> = Vec::new();
+        for (method, text) in &self.defaults {
+            match groups.iter_mut().find(|(other, _)| other == text) {
+                Some((_, methods)) => methods.push(method.name()),
+                None => groups.push((text, vec![method.name()])),
+            }
+        }
+        let Some(((first, _), others)) = groups.split_first() else { return String::new() };
+        let others = others.iter().map(|(text, methods)| format!("; {text} for {}", methods.join(", ")));
+        (*first).to_owned() + &others.collect::<String>()
     }
 
     /// Builds the option.
@@ -186,7 +189,10 @@ mod tests {
         let told = |key: &str| all.iter().find(|setting| setting.spec.key == key).unwrap().default();
         assert_eq!(
             (told("spp"), told("least_cell")),
-            ("4, 16 for cache, 64 for path".to_owned(), "256, 32 for photon-cache".to_owned())
+            (
+                "16; 4 for reconstruction, photon-cache, lightcuts; 64 for path".to_owned(),
+                "256; 32 for photon-cache".to_owned()
+            )
         );
     }
 

@@ -14,9 +14,9 @@ const MAX_SAMPLES: u32 = 1 << 16;
 /// Named settings.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Quality {
-    /// To check the scene
+    /// Check of the scene
     Draft,
-    /// To judge the lighting
+    /// Preview of the lighting
     Preview,
     /// Final image
     Final,
@@ -40,15 +40,17 @@ impl Quality {
 #[derive(Clone, Debug, Default, Args, PartialEq)]
 #[command(next_help_heading = "Planned settings")]
 pub struct PlanArgs {
-    /// Named settings; settings given on the command line are not changed
+    /// Named settings. Settings given on the command line are not changed
     #[arg(long, value_enum, conflicts_with_all = ["time", "error"])]
     pub quality: Option<Quality>,
-    /// Choose settings so that the run takes about this long (10s, 500ms, 2m), from start to written files without
-    /// --verify. Settings given on the command line are not changed. The settings depend on the machine and are printed
+    /// Choose settings so that the run takes about this long: 10s, 500ms, 2m. Reading the scene and writing files are
+    /// included, --verify is not. Settings given on the command line are not changed. The chosen settings depend on the
+    /// machine and are printed
     #[arg(long, value_name = "TIME", value_parser = parse_time, allow_hyphen_values = true, conflicts_with = "error")]
     pub time: Option<f64>,
-    /// Find the cheapest settings whose measured relative RMS error is at most this (like 2%) with 95 % confidence.
-    /// Settings given on the command line are not changed. --verify sets the number of measured pixels [default: 1000]
+    /// Choose the cheapest settings with at most this relative RMS error, like 2%, with 95 % confidence. Paths measure
+    /// the error at some pixels; --verify sets their number [default: 1000]. Settings given on the command line are not
+    /// changed
     #[arg(long, value_name = "PERCENT", value_parser = parse_percent, allow_hyphen_values = true)]
     pub error: Option<f64>,
 }

@@ -21,10 +21,11 @@ pub struct PngArgs {
 /// Options of exposure and view.
 #[derive(Clone, Copy, Debug, Default, Args)]
 pub struct ToneArgs {
-    /// Exposure of PNG files in stops; `auto` maps the 90th percentile of luminance to 0.8, over all frames of a walk
+    /// Exposure of PNG files in stops. `auto` maps the 90th percentile of luminance to 0.8. For a walk, the percentile
+    /// covers all frames
     #[arg(short, long, value_name = "auto|EV", default_value_t, allow_negative_numbers = true)]
     exposure: Exposure,
-    /// Curve from radiance to the PNG file
+    /// Tone curve of PNG files
     #[arg(long, value_enum, value_name = "VIEW", default_value_t)]
     view: NamedView,
 }
@@ -32,12 +33,12 @@ pub struct ToneArgs {
 /// Curve from radiance to display values.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 enum NamedView {
-    /// Khronos PBR Neutral: colours as they are, highlights compressed
+    /// Khronos PBR Neutral: keeps colours and compresses highlights
     #[default]
     Neutral,
-    /// Clip at 1, sRGB
+    /// sRGB, clipped at 1
     Standard,
-    /// AgX: soft contrast, bright colours turn to white
+    /// AgX: soft contrast, bright colours turn white
     Agx,
     /// Hable's filmic curve: strong contrast
     Filmic,

@@ -47,7 +47,7 @@ impl Watch {
         control.begin_frame();
         let bar = std::io::stderr().is_terminal();
         let [done, frames] = self.run.frames();
-        let place = format!("picture {} of {frames}", done + 1);
+        let place = format!("image {} of {frames}", done + 1);
         let run = &mut self.run;
         let result = match self.mode {
             ProgressMode::None => work(),
@@ -131,7 +131,7 @@ fn show_bar(control: &Control, run: &mut RunProgress, stop: Receiver<()>) {
 fn stage_and_rest(progress: &Progress, run: &RunProgress) -> String {
     let stage = progress.displayed_stage().name();
     match run.eta_seconds() {
-        Some(seconds) if seconds >= 1.0 => format!("{stage}, ends in about {seconds:.0} s"),
+        Some(seconds) if seconds >= 1.0 => format!("{stage}, about {seconds:.0} s left"),
         _ => stage.to_owned(),
     }
 }

@@ -8,21 +8,21 @@ use readers::{EnvironmentChoice, Lighting, LoadOptions, UpAxis, Viewpoint};
 #[derive(Clone, Debug, Default, Args)]
 #[command(next_help_heading = "Scene, light and camera")]
 pub struct ReadingArgs {
-    /// Environment in place of the scene's own. A latitude-longitude image (EXR, HDR), or a colour (0.5, R,G,B or
-    /// #rrggbb). `sky` is a clear sky with its sun, `sky,AZIMUTH,ELEVATION` places the sun in degrees. Azimuth 0 is the
-    /// front, 90 the right
+    /// Environment that replaces the environment of the scene: an image, a colour or a sky. An image is a
+    /// latitude-longitude map (EXR, HDR). A colour is 0.5, R,G,B or #rrggbb. `sky` is a clear sky with its sun, and
+    /// `sky,AZIMUTH,ELEVATION` places the sun in degrees. Azimuth 0 is the front, 90 the right
     #[arg(long, value_name = "FILE|COLOUR|sky")]
     env: Option<EnvironmentChoice>,
     /// Rotation of --env about the upward axis in degrees, counter-clockwise seen from above
     #[arg(long, value_name = "DEGREES", requires = "env", value_parser = angle)]
     env_rotate: Option<f64>,
-    /// Leave a model without a lamp dark, instead of adding a sky
+    /// Do not add a sky to a model without lights
     #[arg(long)]
     no_default_light: bool,
-    /// Camera of the scene: its number, counted from 1, or its name [default: 1]
+    /// Camera of the scene, by number (counted from 1) or by name [default: 1]
     #[arg(short, long, value_name = "N|NAME")]
     camera: Option<String>,
-    /// Position of the camera, in the units of the scene; without --look-at it looks at the middle of the scene
+    /// Position of the camera, in units of the scene. Without --look-at, the camera looks at the middle of the scene
     #[arg(long, value_name = "X,Y,Z", value_parser = point, allow_hyphen_values = true)]
     look_from: Option<DVec3>,
     /// Point that the camera looks at
@@ -31,16 +31,16 @@ pub struct ReadingArgs {
     /// Horizontal field of view in degrees
     #[arg(long, value_name = "DEGREES", value_parser = angle)]
     fov: Option<f64>,
-    /// Azimuth of a camera that sees the whole scene, in degrees: 0 is in front, 90 on the right
+    /// Azimuth of a camera that frames the whole scene, in degrees. 0 is the front, 90 the right
     #[arg(long, value_name = "DEGREES", value_parser = angle, conflicts_with_all = ["look_from", "look_at"])]
     azimuth: Option<f64>,
-    /// Elevation of that camera above the horizon in degrees
+    /// Elevation of a camera that frames the whole scene, in degrees above the horizon
     #[arg(long, value_name = "DEGREES", value_parser = elevation, conflicts_with_all = ["look_from", "look_at"])]
     elevation: Option<f64>,
-    /// Upward axis for the options above [default: y; z for STL]
+    /// Upward axis for the options of camera and light [default: y; z for STL]
     #[arg(long, value_enum, value_name = "AXIS")]
     up: Option<UpAxisName>,
-    /// Value of `$NAME` in a Mitsuba scene, which replaces its `<default>`; may be repeated
+    /// Value of the parameter `$NAME` of a Mitsuba scene, which replaces its `<default>`. May be repeated
     #[arg(short = 'D', long = "define", value_name = "NAME=VALUE", value_parser = definition)]
     define: Vec<(String, String)>,
     /// Fail, instead of warning, if the scene has an unsupported feature or the image is black

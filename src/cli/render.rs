@@ -42,7 +42,7 @@ pub fn still(job: &RenderJob, opened: &Opened, span: RunSpan, control: &Control)
     if let Some(exr) = job.files.exr.as_deref().filter(|_| job.resume)
         && job_key::is_done(exr, png, job.frame, &key)
     {
-        talk::note(&format!("{} exists already and is left as it is", exr.display()));
+        talk::note(&format!("{} already exists and is unchanged", exr.display()));
         return Ok(());
     }
     let inputs = Inputs::of(&opened.session);

@@ -38,9 +38,7 @@ impl StillFiles {
             return Ok(StillFiles { exr: Some(exr), png, piped: None });
         };
         let alone = |what: &str| match args.png.names_a_file() || args.png.leaves_out() {
-            true => {
-                Err(Failure::usage(anyhow!("{what} goes with neither --png nor --no-png; leave them out")))
-            }
+            true => Err(Failure::usage(anyhow!("{what} excludes --png and --no-png; leave them out"))),
             false => Ok(()),
         };
         if output.as_os_str() == "-" {

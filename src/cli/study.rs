@@ -27,15 +27,15 @@ pub fn run(benchmark: &Benchmark, args: BenchArgs) -> Result<(), Failure> {
         )));
     }
     let Kind::Study { scenes, pixels, run } = &benchmark.kind else {
-        return Err(Failure::usage(anyhow!("{name} is no study")));
+        return Err(Failure::usage(anyhow!("{name} is not a study")));
     };
     let (files, repeats) = match scenes {
         Scenes::Files(defaults) => (scene_files(&args, defaults), 1),
         Scenes::Own(seeds) => (args.scenes.clone(), *seeds),
     };
     let remedy = match (scenes, files.is_empty()) {
-        (Scenes::Files(_), true) => Some("name a scene behind it"),
-        (Scenes::Own(_), false) => Some("leave the scene out; it makes its own"),
+        (Scenes::Files(_), true) => Some("add the scenes to render: SCENE is missing"),
+        (Scenes::Own(_), false) => Some("leave the scene out, the study makes its own scenes"),
         _ => None,
     };
     if let Some(remedy) = remedy {

@@ -1,7 +1,7 @@
 //! Values of options.
 
 use clap::ValueEnum;
-use clap::builder::{PossibleValuesParser, TypedValueParser};
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use render::session::Feature;
 use scene::MAX_SIDE;
 use std::num::NonZeroUsize;
@@ -10,9 +10,9 @@ use std::str::FromStr;
 /// Form of the messages on stderr.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum ProgressMode {
-    /// A progress bar on a terminal, no progress otherwise
+    /// Progress bar on a terminal; in log files, a line per 10 % or per 30 s
     Auto,
-    /// All messages as JSON, one object per line, by the schema in docs/progress.md
+    /// JSON messages, one object per line, with the schema in docs/progress.md
     Ndjson,
     /// Additional lines for agents of Open Job Description
     Openjd,
@@ -44,7 +44,22 @@ pub enum Loudness {
 
 /// Returns the parser of names of features.
 pub fn feature() -> impl TypedValueParser<Value = Feature> {
-    PossibleValuesParser::new(Feature::ALL.map(Feature::name)).try_map(|name| name.parse::<Feature>())
+    let value = |feature: Feature| PossibleValue::new(feature.name()).help(about(feature));
+    PossibleValuesParser::new(Feature::ALL.map(value)).try_map(|name| name.parse::<Feature>())
+}
+
+/// Describes a feature for `--help`.
+fn about(feature: Feature) -> &'static str {
+    match feature {
+        Feature::Albedo => "Reflected share of light; for emitters, relative emission",
+        Feature::Normal => "Shading normal in world space",
+        Feature::GeometricNormal => "Normal of the triangle in world space",
+        Feature::Position => "Position in the coordinates of the scene file",
+        Feature::Depth => "Distance along the axis of the camera, in units of the scene",
+        Feature::Material => "Number of the material, counted from 1",
+        Feature::Object => "Number of the mesh, counted from 1",
+        Feature::Alpha => "Share of the pixel that surfaces cover",
+    }
 }
 
 /// Parses a count, or a number that counts from 1.

@@ -223,6 +223,6 @@ impl Frames<'_> {
 /// Returns the failure of a frame that was interrupted. The frames before it are complete.
 fn interrupted(number: usize) -> Failure {
     Failure::interrupted(anyhow!(
-        "interrupted before frame {number} was complete; it is not written; run the same command with --resume to continue"
+        "interrupted; frame {number} was not complete and is not written; run the same command with --resume to continue"
     ))
 }

@@ -133,8 +133,8 @@ impl WalkJob {
         let scene = self.scene.display();
         if frames == 0 {
             return Err(Failure::usage(anyhow!(
-                "{scene} has no camera path; add keys in a table [camera.path] to a TOML scene, as in \
-                 scenes/apartment.toml, or an animated camera to a glTF file, or use `lightsplat render` for a still"
+                "{scene} has no camera path; add a table [camera.path] to a TOML scene, as in \
+                 scenes/apartment.toml, or an animated camera to a glTF file; for a still, use `lightsplat render`"
             )));
         }
         let Some(list) = &self.frames else { return Ok((1..=frames).collect()) };

@@ -105,7 +105,7 @@ impl WalkReport {
         let WalkReport { rendered, skipped, repeated, .. } = self;
         let mut text = format!("{rendered} frames rendered");
         if *skipped > 0 {
-            text += &format!(", {skipped} left as they were");
+            text += &format!(", {skipped} existed already");
         }
         if *repeated > 0 {
             text += &format!(" ({repeated} rendered again for their records)");

@@ -7,7 +7,7 @@ use super::Version;
 #[non_exhaustive]
 pub enum EmbreeError {
     /// `rtcNewDevice` returned no device: the processor is too old, or memory is short.
-    #[error("Embree gave no device: {code}: {message}")]
+    #[error("Embree cannot create a device: {code}: {message}")]
     NoDevice {
         /// Embree's name of the error code.
         code: String,
@@ -16,8 +16,8 @@ pub enum EmbreeError {
     },
     /// The loaded library has a version that the bindings do not support.
     #[error(
-        "Embree {found} was loaded, but 4.3 or later below 5 is needed: run `make setup` and build again, \
-         or point EMBREE_DIR at a fitting one"
+        "Embree {found} was loaded, but lightsplat needs 4.3 or a later 4.x: run `make setup` and build \
+         again, or set EMBREE_DIR to such a version"
     )]
     Version {
         /// Version that the library reports.
@@ -65,7 +65,7 @@ pub enum EmbreeError {
         vertices: usize,
     },
     /// More meshes, vertices or triangles than 32-bit ids can distinguish.
-    #[error("{count} {what} are more than 32-bit ids can tell apart: split the scene")]
+    #[error("{count} {what} exceed the range of 32-bit ids: split the scene")]
     TooMany {
         /// Kind of the objects.
         what: &'static str,

@@ -118,7 +118,7 @@ fn colours_of_obj_belong_to_positions_and_follow_them_into_groups() {
     let text = "v 0 0 0 1 1 1\nv 1 0 0 0 0 0\nv 1 1 0 1 0 0\nv 0 1 0 0 1 0\nvt 0 0\nvt 1 1\n\
         f 1/1 2/1 3/1\nusemtl x\nf 1/2 3/2 4/1\n";
     let error = of_file("", ("a.obj", text.as_bytes())).unwrap_err();
-    assert!(error.contains("\"x\"; the colours of the vertices stand in"), "{error}");
+    assert!(error.contains("\"x\"; the colours of the vertices are used instead"), "{error}");
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("a.obj"), text).unwrap();
     fs::write(folder.path().join("s.toml"), format!("{HEAD}mesh = [{{ file = \"a.obj\" }}]\n")).unwrap();
@@ -260,7 +260,10 @@ fn attributes_count_where_something_looks_them_up() {
     assert_eq!(with.memory.geometry - without.memory.geometry, 4 * 12);
     assert!(with.to_string().contains("mesh attributes  1") && !without.to_string().contains("attributes"));
     let missing = of_file("material = \"m\"", ("a.ply", &ply_without_colours())).unwrap_err();
-    assert!(missing.contains("no attribute \"color\"") && missing.contains("white stands in"), "{missing}");
+    assert!(
+        missing.contains("no attribute \"color\"") && missing.contains("white is used instead"),
+        "{missing}"
+    );
 }
 
 #[test]

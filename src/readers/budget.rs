@@ -44,9 +44,8 @@ impl TriangleBudget {
         if before.saturating_add(triangles as u64) <= limit {
             return Ok(());
         }
-        let what = format!(
-            "its meshes, instances counted each, come to more than the {limit} triangles that there is memory for"
-        );
+        let what =
+            format!("its meshes, with all instances, exceed the {limit} triangles that fit into memory");
         Err(Location::file(&place.path).wrong(what, "leave some of them out"))
     }
 }

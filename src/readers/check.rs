@@ -57,8 +57,8 @@ pub fn conductor(preset: &str, place: &Location) -> Result<(Rgb, Rgb), SceneErro
 pub fn keys(kind: &str, known: &[&str], given: &[(&str, bool)], place: &Location) -> Result<(), SceneError> {
     match given.iter().find(|(key, is_given)| *is_given && !known.contains(key)) {
         Some((key, _)) => {
-            let what = format!("{key} means nothing for a {kind}");
-            Err(place.wrong(what, format!("leave it out; known are {}", known.join(", "))))
+            let what = format!("{key} has no effect on a {kind}");
+            Err(place.wrong(what, format!("leave it out; valid keys are {}", known.join(", "))))
         }
         None => Ok(()),
     }

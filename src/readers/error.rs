@@ -1,4 +1,4 @@
-//! Errors of reading scenes, and warnings about features that are not modelled.
+//! Errors of reading scenes, and warnings about features that are not supported.
 //!
 //! Both name the file and, if possible, the line.
 
@@ -66,7 +66,7 @@ pub enum Severity {
     Warning,
 }
 
-/// A feature requested by a scene file that is not modelled, and its replacement.
+/// A feature requested by a scene file that is not supported, and its replacement.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Warning {
     /// Location of the request.
@@ -173,7 +173,7 @@ pub enum SceneError {
         left_out: usize,
     },
     /// A warning, under `strict`.
-    #[error("{0} (an error because of strict reading); remove it, or read without strict")]
+    #[error("{0} (an error because of --strict); remove the cause, or leave --strict out")]
     Strict(Warning),
 }
 
@@ -228,7 +228,7 @@ fn lines(errors: &[SceneError]) -> String {
 }
 
 fn more(left_out: &usize) -> String {
-    if *left_out > 0 { format!("\nand {left_out} errors more") } else { String::new() }
+    if *left_out > 0 { format!("\nand {left_out} more errors") } else { String::new() }
 }
 
 impl SceneError {
@@ -344,6 +344,6 @@ mod tests {
         }
         let text = log.conclude(Ok(())).unwrap_err().to_string();
         assert_eq!(text.lines().count(), 11, "{text}");
-        assert!(text.contains("s.xml:10: a; b\nand 2 errors more"), "{text}");
+        assert!(text.contains("s.xml:10: a; b\nand 2 more errors"), "{text}");
     }
 }

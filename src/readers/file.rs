@@ -37,7 +37,7 @@ pub fn read_regular(path: &Path) -> io::Result<Vec<u8>> {
 fn regular_length(path: &Path) -> io::Result<u64> {
     let metadata = fs::metadata(path)?;
     if !metadata.is_file() {
-        return Err(io::Error::other("it is not a regular file"));
+        return Err(io::Error::other("this is not a regular file"));
     }
     Ok(metadata.len())
 }

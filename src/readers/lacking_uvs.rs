@@ -51,10 +51,11 @@ pub(crate) fn report(
         if names.len() > MAX_LISTED {
             listed.push(format!("{} more", names.len() - MAX_LISTED));
         }
-        let what = format!("triangles lack the coordinates that their textures need: {}", listed.join(", "));
+        let what =
+            format!("triangles lack texture coordinates, which their textures need: {}", listed.join(", "));
         match is_modelled {
             true => log.note(place, what, "each shows half of its texture, as in Mitsuba"),
-            false => log.warn(place, what, "a part of the texture stands in; export texture coordinates")?,
+            false => log.warn(place, what, "one part of the texture is used; export texture coordinates")?,
         }
     }
     Ok(())

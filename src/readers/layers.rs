@@ -27,7 +27,7 @@ pub(super) fn coated(
     let transmits = |lobe: &Lobe| matches!(lobe, Lobe::Dielectric { .. } | Lobe::RoughDielectric { .. });
     let is_layered = nested.coat.is_some() || nested.principled.is_some() || nested.blend.is_some();
     if is_layered || nested.lobes.iter().any(transmits) {
-        let what = "a coating of plastic, glass, principled materials or blends is not modelled";
+        let what = "a coating of plastic, glass, principled materials or blends is not supported";
         log.warn(place, what, "it is left out")?;
         return Ok(nested);
     }
@@ -57,15 +57,15 @@ pub(super) fn blended(
         |material: &Material| material.principled.is_some() || material.diffuse != Reflectance::BLACK;
     let coat = |material: &Material| (material.coat, material.principled.is_some());
     if is_based(&first) && is_based(&other) && coat(&first) != coat(&other) {
-        let fallback = "that of the first is on both";
-        log.warn(place, "a blend of bases under different coats is not modelled", fallback)?;
+        let fallback = "the coat of the first is on both";
+        log.warn(place, "a blend of bases under different coats is not supported", fallback)?;
     }
     for (is_left_out, what) in [
         (first.blend.is_some(), "a blend as the first material of a blend"),
         (other.opacity.is_some() || other.relief.is_some(), "a mask or relief of the second material"),
     ] {
         if is_left_out {
-            log.warn(place, format!("{what} is not modelled"), "it is left out")?;
+            log.warn(place, format!("{what} is not supported"), "it is left out")?;
         }
     }
     Ok(Material { blend: Some(Box::new(Blend { weight, other })), ..first })

@@ -130,7 +130,7 @@ pub fn load(path: &Path, options: &LoadOptions) -> Result<Loaded, SceneError> {
     }
     if scene.is_dark() {
         let fallback = "the image will be black; add light with --env sky, or a lamp to the scene";
-        log.warn(&Location::file(path), "the scene has no light that is modelled", fallback)?;
+        log.warn(&Location::file(path), "the scene has no light that is supported", fallback)?;
     }
     Ok(Loaded { scene, cameras, warnings: log.into_warnings(), repairs, hash })
 }

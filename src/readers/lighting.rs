@@ -138,7 +138,7 @@ impl Lighting {
                 EnvironmentChoice::Sky(SUN)
             }
             None if self.rotation != 0.0 => {
-                return Err(place.wrong("--env-rotate turns no environment", "add --env"));
+                return Err(place.wrong("--env-rotate has no environment to rotate", "add --env"));
             }
             None => return Ok(()),
         };

@@ -81,7 +81,10 @@ fn a_texture_that_cannot_be_read_is_a_warning_and_grey_in_all_formats() {
             let warnings = said(&loaded);
             assert!(!warnings.is_empty(), "{name}");
             for warning in &warnings {
-                assert!(warning.contains(image) && warning.contains("a grey of 0.5 stands in"), "{warning}");
+                assert!(
+                    warning.contains(image) && warning.contains("a grey of 0.5 is used instead"),
+                    "{warning}"
+                );
             }
             assert_eq!(loaded.scene.textures[0].texels.get(0, 0), Rgb::splat(0.5), "{name}");
             let strict = load_with(name, &text, &files, true).unwrap_err();
@@ -195,7 +198,7 @@ fn textures_without_coordinates_are_named_once_a_mesh() {
         let loaded = load_with("s.toml", &text, &files, false).unwrap_or_else(|e| panic!("{text}: {e}"));
         let warnings = said(&loaded);
         let is_named =
-            warnings.iter().filter(|w| w.contains("lack the coordinates") && w.contains(named)).count();
+            warnings.iter().filter(|w| w.contains("lack texture coordinates") && w.contains(named)).count();
         assert_eq!(
             (is_named, warnings.len()),
             (usize::from(!named.is_empty()), is_named),
@@ -211,8 +214,8 @@ fn textures_without_coordinates_are_named_once_a_mesh() {
          </bsdf></shape></scene>"
     );
     let notes = load_with("s.xml", &xml, &files, true).unwrap().warnings;
-    assert!(notes.iter().any(|note| note.what.contains("lack the coordinates")), "{notes:?}");
+    assert!(notes.iter().any(|note| note.what.contains("lack texture coordinates")), "{notes:?}");
     let cube = xml.replace("\"ply\"", "\"cube\"").replace("<string name=\"filename\" value=\"a.ply\"/>", "");
     let notes = load_with("s.xml", &cube, &files, true).unwrap().warnings;
-    assert!(!notes.iter().any(|note| note.what.contains("lack the coordinates")), "{notes:?}");
+    assert!(!notes.iter().any(|note| note.what.contains("lack texture coordinates")), "{notes:?}");
 }

@@ -30,8 +30,8 @@ impl LoadOptions {
     pub(crate) fn no_choice(&self, path: &Path) -> Result<(), SceneError> {
         self.no_parameters(path)?;
         let Some(camera) = self.camera.as_deref().filter(|camera| *camera != "1") else { return Ok(()) };
-        let remedy = "a TOML scene has one: leave --camera out, which chooses among those of a Mitsuba scene (.xml) or a \
-                      glTF model";
+        let remedy = "a TOML scene has one camera: leave --camera out, which is for Mitsuba scenes (.xml) and glTF \
+                      models";
         Err(Location::file(path).no_camera(camera, remedy))
     }
 

@@ -1,4 +1,4 @@
-//! Tests: the page lists kinds of pictures and channels of OpenEXR files, and each is read or refused as it says.
+//! Tests: the page lists kinds of images and channels of OpenEXR files, and each is read or refused as it says.
 
 use super::decode::{Channel, DecodedImage, decode};
 use super::error::Location;
@@ -14,7 +14,7 @@ const fn new(name: &'static str, fate: Fate, note: &'static str) -> Statement {
     Statement { name, fate, note }
 }
 
-/// Kinds of pictures.
+/// Kinds of images.
 const PICTURES: &[Statement] = &[
     new("PNG of 8 bits", Fate::Read, "sRGB unless raw; alpha is dropped"),
     new("PNG of 16 bits", Fate::Read, "sRGB unless raw; alpha is dropped"),
@@ -33,17 +33,17 @@ const PICTURES: &[Statement] = &[
 
 /// Channels, attributes and parts of OpenEXR files.
 const EXR: &[Statement] = &[
-    new("R", Fate::Read, "with `G` and `B`: the picture, if no layer precedes the names"),
+    new("R", Fate::Read, "with `G` and `B`: the image, if no layer precedes the names"),
     new("Combined.R", Fate::Read, "else the layer `Combined`, `beauty`, `rgba`, `rgb`, `color` or `colour`"),
     new("Y", Fate::Read, "else the luminance without a layer, as grey; `L` as well"),
     new("NAME.R", Fate::Read, "else the colour of the only layer that has one"),
     new("RY", Fate::Read, "with `Y` and `BY`: luminance and chroma, interpolated linearly where subsampled"),
     new("A", Fate::NoEffect, "alpha is dropped"),
     new("NAME.X", Fate::NoEffect, "further channels, layers and parts"),
-    new("several layers", Fate::Refused, "no layer is clearly the picture; the message lists all channels"),
-    new("displayWindow", Fate::Read, "the picture; black where it has no data"),
+    new("several layers", Fate::Refused, "no layer is clearly the image; the message lists all channels"),
+    new("displayWindow", Fate::Read, "the image; black where it has no data"),
     new("chromaticities", Fate::Read, "converted to Rec. 709 unless raw; colours beyond it are clipped"),
-    new("deep data", Fate::Refused, "if they are the picture; flatten them"),
+    new("deep data", Fate::Refused, "if they are the image; flatten them"),
     new("subsampling under B44", Fate::Refused, "save with another compression"),
 ];
 
@@ -53,7 +53,7 @@ fn read(bytes: &[u8], name: &str) -> Option<DecodedImage> {
 
 #[test]
 fn the_page_lists_the_kinds_of_pictures_and_the_channels() {
-    assert_page_lists("Pictures", PICTURES);
+    assert_page_lists("Images", PICTURES);
     assert_page_lists("OpenEXR", EXR);
 }
 
@@ -153,7 +153,7 @@ fn each_channel_of_an_exr_has_its_meaning() {
     assert_eq!(colour(&[&layer("shot", own)[..], &other].concat()), None);
     let chroma = colour(&[("Y", 0.34934), ("RY", 0.6 / 0.34934 - 1.0), ("BY", 0.1 / 0.34934 - 1.0)]).unwrap();
     assert!((chroma - Rgb::new(0.6, 0.3, 0.1)).abs().max_element() < 1e-4, "{chroma}");
-    // The display window is the picture.
+    // The display window is the image.
     let wider = exr(&layer("", own), |attributes| {
         attributes.display_window = IntegerBounds { position: Vec2(-1, 0), size: Vec2(4, 2) };
     });

@@ -213,7 +213,7 @@ impl Contents {
                 | MeshSource::Stl(path)
                 | MeshSource::Serialized(path, _) => {
                     if made.iter().all(|mesh| mesh.triangles.is_empty()) {
-                        let what = format!("no triangles or polygons are found in {}", path.display());
+                        let what = format!("there are no triangles or polygons in {}", path.display());
                         log.warn(&plan.place, what, "the mesh is left out; repair or re-export it")?;
                     }
                 }

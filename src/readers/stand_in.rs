@@ -30,7 +30,7 @@ pub(crate) fn warning(error: SceneError, place: &Location) -> Result<Warning, Sc
         }
         error => return Err(error),
     };
-    Ok(Warning::new(place.clone(), what, format!("a grey of {GREY} stands in; {remedy}")))
+    Ok(Warning::new(place.clone(), what, format!("a grey of {GREY} is used instead; {remedy}")))
 }
 
 /// Replaces missing images, with their warnings.

@@ -6,9 +6,9 @@
 /// Fate of a statement in a reader.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Fate {
-    /// The picture follows the statement.
+    /// The image follows the statement.
     Read,
-    /// The picture does not depend on the statement, so nothing is said.
+    /// The image does not depend on the statement, so nothing is said.
     NoEffect,
     /// A warning names the statement and what stands in; an error under `--strict`.
     Named,

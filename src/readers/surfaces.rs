@@ -29,8 +29,8 @@ pub(crate) fn finish_mesh(plan: &MeshPlan, raw: RawMesh, remarks: &mut Vec<Warni
             let is_bare = |name: &&str| !(has_colours && name.is_empty());
             let names = parts.iter().map(|part| part.0.as_str()).filter(is_bare);
             let fallback = match has_colours {
-                true => "the colours of the vertices stand in",
-                false => "a grey of 0.5 stands in",
+                true => "the colours of the vertices are used instead",
+                false => "a grey of 0.5 is used instead",
             };
             remarks.extend(undefined_materials(plan, appearances, names, fallback));
             let unknown = Appearance { material: *other, emission: None };

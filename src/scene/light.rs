@@ -65,7 +65,7 @@ pub struct DistantDisc {
     pub direction: Vec3,
     /// Angle from the centre to the rim, radians.
     pub half_angle: f32,
-    /// Radiance, W/(sr m²), added to that of the environment.
+    /// Radiance, W/(sr m²), added to the radiance of the environment.
     pub radiance: Rgb,
 }
 

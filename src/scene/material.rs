@@ -23,7 +23,7 @@ pub struct Material {
     pub two_sided: bool,
     /// Albedo of the Lambert base, without the coat's transmittance; zero without a base.
     pub diffuse: Reflectance,
-    /// Dielectric interface over the base. Its roughness is that of the first rough lobe.
+    /// Dielectric interface over the base. The first rough lobe determines its roughness.
     pub coat: Option<Coat>,
     /// Lobes besides the base: up to five; lobes of glass count twice. Further lobes are ignored.
     pub lobes: Vec<Lobe>,

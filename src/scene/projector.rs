@@ -20,8 +20,8 @@ pub enum FovAxis {
 }
 
 impl FovAxis {
-    /// Returns the tangent of half the horizontal field of view of an image of `aspect` (width over height), from the
-    /// tangent of half the field of view along this axis.
+    /// Returns the tangent of half the horizontal field of view. `tan_half` is the tangent of half the field of view
+    /// along this axis, and `aspect` is width over height.
     pub fn tan_half_x(self, tan_half: f64, aspect: f64) -> f64 {
         match self {
             FovAxis::X => tan_half,

@@ -288,7 +288,7 @@ impl fmt::Display for Requirements {
         let mib = |bytes: usize| bytes as f64 / f64::from(1 << 20);
         write!(
             f,
-            "memory           about {:.1} MiB (geometry {:.1}, hierarchy {:.1}, pictures {:.1})",
+            "memory           about {:.1} MiB (geometry {:.1}, hierarchy {:.1}, images {:.1})",
             mib(self.memory.total()),
             mib(self.memory.geometry),
             mib(self.memory.hierarchy),

@@ -52,13 +52,13 @@ pub enum FramingError {
         frames: usize,
     },
     /// The crop is empty or not on the film.
-    #[error("--crop must lie within the film of {}x{} pixels", film[0], film[1])]
+    #[error("--crop must lie within the image of {}x{} pixels", film[0], film[1])]
     Crop {
         /// Width and height of the film.
         film: [u32; 2],
     },
     /// The window has too many pixels.
-    #[error("{pixels} pixels are more than {MAX_PIXELS}: render the film in parts with --crop")]
+    #[error("{pixels} pixels are more than {MAX_PIXELS}: render the image in parts with --crop")]
     Pixels {
         /// Number of pixels in the window.
         pixels: u64,

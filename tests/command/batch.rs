@@ -83,13 +83,13 @@ fn scenes_are_read_once_and_resuming_renders_what_lacks() {
         + &["a", "b", "c"]
             .map(|n| format!("[[picture]]\nscene = 'room.xml'\noutput = 'out/{n}.exr'\n"))
             .concat();
-    // Reading warns of what is not modelled, once for each time that it is done.
+    // Reading warns of what is not supported, once for each time that it is done.
     let sandbox = sandbox(&jobs.replace(", camera = '3'", ""));
     let scene = super::ROOM.replace("type=\"diffuse\"", "type=\"roughdielectric\"");
     fs::write(sandbox.path("room.xml"), scene).unwrap();
     let stderr = batch(&sandbox, &[]).expect(0).stderr;
     assert_eq!(
-        stderr.matches("\"reflectance\" of bsdf \"roughdielectric\" is not modelled").count(),
+        stderr.matches("\"reflectance\" of bsdf \"roughdielectric\" is not supported").count(),
         1,
         "{stderr}"
     );
@@ -97,7 +97,7 @@ fn scenes_are_read_once_and_resuming_renders_what_lacks() {
     let kept = ["a", "c"].map(|n| read(&sandbox.path(&format!("out/{n}.exr"))));
     fs::remove_file(sandbox.path("out/b.exr")).unwrap();
     let stderr = batch(&sandbox, &["--resume"]).expect(0).stderr;
-    assert_eq!(stderr.matches("left as it is").count(), 2, "{stderr}");
+    assert_eq!(stderr.matches("already exists and is unchanged").count(), 2, "{stderr}");
     assert!(["a", "c"].map(|n| read(&sandbox.path(&format!("out/{n}.exr")))) == kept);
     assert!(sandbox.path("out/b.exr").exists());
     // A camera that is not there.

@@ -68,7 +68,7 @@ fn a_model_without_light_gets_a_sky_and_a_name_from_its_file() {
         assert!(image.pixels.iter().all(|pixel| pixel.min_element() > 0.0));
     }
     let dark = render(&sandbox, "dark.gltf", &["--no-default-light", "--strict"]).expect(3).stderr;
-    assert!(dark.contains("no light that is modelled") && dark.contains("--env sky"), "{dark}");
+    assert!(dark.contains("no light that is supported") && dark.contains("--env sky"), "{dark}");
 }
 
 #[test]

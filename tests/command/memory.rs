@@ -44,7 +44,7 @@ fn copies_of_meshes_are_counted_before_they_are_made() {
         let text = format!("<scene version=\"3.0.0\"><sensor type=\"perspective\"/>{shapes}</scene>");
         std::fs::write(sandbox.path("a.xml"), text).unwrap();
         let stderr = run(&sandbox, Some(600_000), "info a.xml").expect(3).stderr;
-        let names_both = stderr.contains("a.xml") && stderr.contains("triangles that there is memory for");
+        let names_both = stderr.contains("a.xml") && stderr.contains("triangles that fit into memory");
         assert!(names_both, "{name}: {stderr}");
     }
 }

@@ -81,7 +81,7 @@ fn pictures_that_do_not_belong_together_are_refused_with_the_reason() {
     let cases: [(&str, &[&str]); 5] = [
         ("seed 1, too", &["--method", "path", "--seed", "1"]),
         ("setting, besides", &["--method", "path", "--seed", "2", "--max-depth", "2"]),
-        ("film or crop", &["--method", "path", "--seed", "2", "--crop", "0,0,4,4"]),
+        ("size or crop", &["--method", "path", "--seed", "2", "--crop", "0,0,4,4"]),
         ("method", &["--seed", "2", "--vpls", "100", "--no-denoise"]),
         ("scene", &["--method", "path", "--seed", "2"]),
     ];

@@ -138,7 +138,7 @@ fn equal_renders_are_equal_bytes_and_are_left_alone_where_they_are() {
     let left = |more: &[&str]| {
         let stderr =
             sandbox.render("a.exr", &[&["--reproducible", "--resume"], more].concat()).expect(0).stderr;
-        stderr.contains("left as it is")
+        stderr.contains("already exists and is unchanged")
     };
     assert!(left(&[]));
     std::fs::remove_file(sandbox.path("a.png")).unwrap();
@@ -160,7 +160,7 @@ fn agents_are_told_percentage_status_and_failure() {
         .collect();
     let (last, before) = told.split_last().unwrap();
     assert!(*last == 100.0 && before.iter().all(|p| *p < 100.0), "{stderr}");
-    assert!(stderr.contains("openjd_status: picture 1 of 1: render") && stderr.contains("wrote a.exr"));
+    assert!(stderr.contains("openjd_status: image 1 of 1: render") && stderr.contains("wrote a.exr"));
     let stderr = sandbox.run(&["render", "none.xml", "-o", "b.exr", "--progress", "openjd"]).expect(3).stderr;
     assert!(stderr.contains("openjd_fail: ") && stderr.contains("error: "), "{stderr}");
 }
@@ -195,7 +195,13 @@ fn write_protected_pictures_are_refused_before_rendering_and_may_stay() {
             assert!(stderr.contains(name) && stderr.contains("write-protected"), "{stderr}");
         }
         assert!(read(&sandbox.path(name)) == before);
-        assert!(sandbox.render("a.exr", &["--resume"]).expect(0).stderr.contains("left as it is"));
+        assert!(
+            sandbox
+                .render("a.exr", &["--resume"])
+                .expect(0)
+                .stderr
+                .contains("already exists and is unchanged")
+        );
         std::fs::remove_file(sandbox.path(name)).unwrap();
     }
 }
@@ -219,7 +225,7 @@ fn a_disk_that_fills_up_ends_with_4_and_leaves_the_old_files_whole() {
     sandbox.render("a.exr", &[]).expect(0);
     let before = (read(&sandbox.path("a.exr")), read(&sandbox.path("a.png")));
     let stderr = limited(&sandbox, "trap '' XFSZ;").expect(4).stderr;
-    assert!(stderr.contains("a.exr") && stderr.contains("as it was before"), "{stderr}");
+    assert!(stderr.contains("a.exr") && stderr.contains("an existing file is unchanged"), "{stderr}");
     assert_eq!((read(&sandbox.path("a.exr")), read(&sandbox.path("a.png"))), before);
     assert_eq!(sandbox.files(), ["a.exr", "a.png", "room.xml"]);
 }

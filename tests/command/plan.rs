@@ -49,7 +49,7 @@ fn an_error_is_met_and_the_same_for_any_number_of_threads() {
         let plan = plan(&run);
         assert_eq!((&plan["asked_error"], &plan["met"]), (&0.2.into(), &true.into()), "{plan}");
         assert!(plan["got_error"]["high"].as_f64().unwrap() <= 0.2, "{plan}");
-        assert!(run.stderr.contains("error by paths at"), "{}", run.stderr);
+        assert!(run.stderr.contains("error, measured by path tracing"), "{}", run.stderr);
         let file = ExrFile::read(&sandbox.path("a.exr")).unwrap();
         assert!(file.metadata().number("verified_rms_high").unwrap() <= 0.2);
         assert_eq!(file.metadata().number("plan_got_error"), plan["got_error"]["value"].as_f64());
@@ -97,7 +97,7 @@ fn qualities_are_settings_from_rough_to_fine_and_typed_ones_are_held() {
 fn without_time_the_cheapest_picture_is_taken_and_the_reason_is_told() {
     let sandbox = Sandbox::new();
     let stderr = render(&sandbox, "a.exr", &["--time", "1ms"]).expect(0).stderr;
-    assert!(stderr.contains("there is no time") || stderr.contains("not denoised"), "{stderr}");
+    assert!(stderr.contains("neither method meets the time") || stderr.contains("not denoised"), "{stderr}");
     assert!(!stderr.contains("about 0.0 times"), "{stderr}");
 }
 

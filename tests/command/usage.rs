@@ -202,7 +202,7 @@ fn a_black_picture_is_warned_of_and_an_error_under_strict() {
     let dark = text.replace("<emitter type=\"area\"/>", "");
     std::fs::write(sandbox.path("black.xml"), dark).unwrap();
     let warned = sandbox.run(&arguments).expect(0);
-    assert!(warned.stderr.contains("no light that is modelled"), "{}", warned.stderr);
+    assert!(warned.stderr.contains("no light that is supported"), "{}", warned.stderr);
     sandbox.run(&[&arguments[..], &["--strict"]].concat()).expect(3);
 }
 

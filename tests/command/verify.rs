@@ -13,7 +13,7 @@ fn the_measured_error_is_in_statistics_and_metadata() {
             ["--method", method, "--verify", "50", "--verify-samples", "256", "--stats", "json", "--no-png"];
         let run = sandbox.render("a.exr", &options).expect(0);
         let place = |text: &str| run.stderr.find(text).unwrap_or_else(|| panic!("{}", run.stderr));
-        assert!(place("wrote a.exr") < place("error by paths at"));
+        assert!(place("wrote a.exr") < place("error, measured by path tracing"));
         let report: serde_json::Value = serde_json::from_str(&run.stdout).unwrap();
         let found = &report["run"]["verified"];
         assert_eq!((found["against"].as_str(), found["most_samples"].as_u64()), (Some(against), Some(256)));

@@ -64,14 +64,17 @@ pub struct NoPicture {
 impl fmt::Display for NoPicture {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         let listed = &self.channels[..self.channels.len().min(MAX_LISTED)];
-        write!(f, "no channels are clearly the picture; its channels are: {}", listed.join(", "))?;
+        write!(
+            f,
+            "no channels are clearly the colour of the image; its channels are: {}",
+            listed.join(", ")
+        )?;
         if listed.len() < self.channels.len() {
             write!(f, " and {} more", self.channels.len() - listed.len())?;
         }
-        let remedy =
-            "save the picture as R, G, B or Y without a layer, or in a layer Combined, beauty or rgba";
+        let remedy = "save the image as R, G, B or Y without a layer, or in a layer Combined, beauty or rgba";
         write!(f, "; {remedy}")?;
-        if self.has_deep { write!(f, "; deep data is not read, so flatten it") } else { Ok(()) }
+        if self.has_deep { write!(f, "; deep data is not supported, so flatten the image") } else { Ok(()) }
     }
 }
 

@@ -45,10 +45,11 @@ pub fn read_picture<R: Read + Seek, E: From<ExrError>>(
         check([width, height], bytes as u64)?;
     }
     let chromaticities = header.shared_attributes.chromaticities;
-    let primaries = Primaries::new(chromaticities)
-        .ok_or_else(|| content("the primaries of its attribute chromaticities span no colours".to_owned()))?;
+    let primaries = Primaries::new(chromaticities).ok_or_else(|| {
+        content("the attribute chromaticities has primaries that span no colours".to_owned())
+    })?;
     if overlap(data, display).is_none() {
-        return Err(content("the window of its data lies outside its display window".to_owned()));
+        return Err(content("the data window lies outside the display window".to_owned()));
     }
     let channels: &[usize] = match place.model {
         ColourModel::Luma => &place.channels[..1],

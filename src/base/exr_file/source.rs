@@ -17,7 +17,7 @@ use std::io::{Read, Seek, SeekFrom};
 const BATCH: usize = 64;
 
 /// Reason for refusing deep data.
-const DEEP: &str = "it holds deep data, which is not read; flatten it";
+const DEEP: &str = "the file holds deep data, which is not supported; flatten the image";
 
 /// An open OpenEXR file. Its headers are read and checked.
 #[derive(Debug)]
@@ -127,7 +127,7 @@ fn check(headers: &[Header]) -> Result<(), ExrError> {
                 step > 0 && size.is_multiple_of(step) && i64::from(start).rem_euclid(step as i64) == 0
             };
             if !(divides(across, left, width) && divides(down, top, height)) {
-                let what = "the window of its data is no multiple of its sampling";
+                let what = "the data window is not a multiple of the sampling";
                 return Err(ExrError::Content(format!("channel {}: {what}", text(name))));
             }
             *sampling = Vec2(1, 1);

@@ -13,7 +13,7 @@ use ::exr::prelude::{FlatSamples, Text, Vec2};
 /// The library expects as many bytes as pixels have without subsampling. It gets a header that claims the true number.
 pub(super) fn decompress(header: &Header, block: Chunk, section: IntegerBounds) -> Result<Vec<u8>, ExrError> {
     let CompressedBlock::ScanLine(block) = block.compressed_block else {
-        return Err(ExrError::content("subsampled channels in tiles are not read"));
+        return Err(ExrError::content("subsampled channels in tiles are not supported"));
     };
     let bytes = section_bytes(header, section);
     if bytes == 0 {
@@ -32,13 +32,13 @@ pub(super) fn decompress(header: &Header, block: Chunk, section: IntegerBounds) 
         }
         // The library counts their samples twice.
         Compression::B44 | Compression::B44A => {
-            return Err(ExrError::content("subsampled channels under B44 compression are not read"));
+            return Err(ExrError::content("subsampled channels under B44 compression are not supported"));
         }
         compression => {
             let pixels = section.size.area();
             if !bytes.is_multiple_of(pixels) {
                 return Err(ExrError::content(format!(
-                    "subsampled channels of this size under {compression} are not read"
+                    "subsampled channels of this size under {compression} are not supported"
                 )));
             }
             claimed.channels = claim(bytes / pixels);

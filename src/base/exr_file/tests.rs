@@ -235,7 +235,7 @@ fn data_lie_in_the_display_window_and_the_rest_is_black() {
     let found = placed([-3, 5, 2, 9], [-3, 5, 2, 9]);
     assert_eq!((found.size, found.pixels[7]), ([6, 5], value(-2, 6)));
     let outside = Part { data: [9, 9, 12, 12], ..Part::new(&at) };
-    assert!(read(&file(&[outside]), false).unwrap_err().to_string().contains("outside its display window"));
+    assert!(read(&file(&[outside]), false).unwrap_err().to_string().contains("outside the display window"));
 }
 
 #[test]

@@ -17,7 +17,7 @@ use tempfile::NamedTempFile;
 pub fn check_unprotected(path: &Path) -> Result<(), ImageError> {
     let present = resolve(path).and_then(fs::metadata);
     if present.is_ok_and(|present| present.is_file() && present.permissions().readonly()) {
-        let reason = "it is write-protected; allow it by chmod u+w, or name another file".to_owned();
+        let reason = "the file is write-protected; run chmod u+w on it, or name another file".to_owned();
         return Err(ImageError::Output { path: path.to_owned(), reason });
     }
     Ok(())
@@ -52,8 +52,8 @@ pub fn check_place(path: &Path) -> Result<(), ImageError> {
     };
     let present = fs::metadata(&target).ok();
     match &present {
-        Some(present) if present.is_dir() => return refuse("it is a folder; name a file in it".to_owned()),
-        Some(present) if !present.is_file() => return refuse("it is not a regular file".to_owned()),
+        Some(present) if present.is_dir() => return refuse("this is a folder; name a file in it".to_owned()),
+        Some(present) if !present.is_file() => return refuse("this is not a regular file".to_owned()),
         _ => {}
     }
     let folder = folder_of(&target);
@@ -93,11 +93,13 @@ fn irreplaceable(
     let (folder, own) = (fs::metadata(folder).ok()?, own.as_file().metadata().ok()?);
     let is_others = own.uid() != 0 && ![present.uid(), folder.uid()].contains(&own.uid());
     if folder.mode() & STICKY != 0 && is_others {
-        return Some("it is another user's file in a folder where only its owner may replace it");
+        return Some("another user owns the file, and only the owner may replace files in this folder");
     }
     // Lack of permission to write into the old file is another error, which does not prevent replacing it.
     let opened = File::options().append(true).open(target);
-    opened.is_err_and(|error| error.raw_os_error() == Some(EPERM)).then_some("it is marked as immutable")
+    opened
+        .is_err_and(|error| error.raw_os_error() == Some(EPERM))
+        .then_some("the file is marked as immutable")
 }
 
 /// Replaces the file at `path` by the output of `write`, completely or not at all.
@@ -124,7 +126,7 @@ pub fn write_atomically(
     temporary.persist(&target).map_err(|failed| match keep(failed.file) {
         Ok(kept) => io::Error::new(
             failed.error.kind(),
-            format!("{}; what was to be written is in {}", failed.error, kept.display()),
+            format!("{}; the new data is in {}", failed.error, kept.display()),
         ),
         Err(_) => failed.error,
     })?;
@@ -177,7 +179,7 @@ pub fn resolve(path: &Path) -> io::Result<PathBuf> {
             }
         }
     }
-    Err(io::Error::other("its symbolic links go round in a circle"))
+    Err(io::Error::other("its symbolic links form a cycle"))
 }
 
 fn folder_of(path: &Path) -> PathBuf {

@@ -24,7 +24,7 @@ pub enum ImageError {
         /// Description of the error.
         reason: String,
     },
-    /// No channels are clearly the picture.
+    /// No channels are clearly the colour of the image.
     #[error("{}: {none}", path.display())]
     NoPicture {
         /// The file.
@@ -51,7 +51,7 @@ pub enum ImageError {
         reason: String,
     },
     /// Writing failed. The file's former content is unchanged.
-    #[error("writing {} failed: {error}; the file, if there was one, is as it was before", path.display())]
+    #[error("cannot write {}: {error}; an existing file is unchanged", path.display())]
     Write {
         /// The file.
         path: PathBuf,

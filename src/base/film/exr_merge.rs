@@ -39,7 +39,7 @@ impl ExrFile {
     ) -> Result<(), ImageError> {
         if let Some(other) = others.iter().find(|other| other.shape() != self.shape()) {
             let [a, b] = [&self.path, &other.path].map(|path| path.display());
-            let reason = format!("its parts or channels are not those of {a}");
+            let reason = format!("its parts or channels differ from {a}");
             return Err(ImageError::Decode { path: b.to_string().into(), reason });
         }
         let sum = |pixel: usize| weights.iter().map(|weight| weight.of(pixel)).sum::<f64>();

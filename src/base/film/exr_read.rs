@@ -43,7 +43,7 @@ impl ExrFile {
         let fail = |error| ImageError::Read { path: path.to_owned(), error };
         // Opening a pipe would wait for its writer.
         if !fs::metadata(path).map_err(fail)?.is_file() {
-            return Err(fail(io::Error::other("it is not a regular file")));
+            return Err(fail(io::Error::other("this is not a regular file")));
         }
         let file = File::open(path).map_err(fail)?;
         let decode = |error: ExrError| match error {
@@ -101,7 +101,7 @@ impl ExrFile {
     }
 
     fn primaries(&self) -> Result<Primaries, ImageError> {
-        let reason = || "the primaries of its attribute chromaticities span no colours".to_owned();
+        let reason = || "the attribute chromaticities has primaries that span no colours".to_owned();
         Primaries::new(self.parts.attributes.chromaticities)
             .ok_or_else(|| ImageError::Decode { path: self.path.clone(), reason: reason() })
     }
@@ -115,7 +115,7 @@ impl ExrFile {
             Some(name) => Err(ImageError::Decode {
                 path: self.path.clone(),
                 reason: format!(
-                    "its part `{name}` holds deep data, which would be lost; take it out of the file"
+                    "the part `{name}` holds deep data, which would be lost; remove this part from the file"
                 ),
             }),
             None => Ok(()),
@@ -208,7 +208,7 @@ impl ExrFile {
         metadata
     }
 
-    /// Returns the names of all channels, with those of their parts, in the file's order.
+    /// Returns the names of all channels, with the names of their parts, in the order of the file.
     pub fn channels(&self) -> Vec<String> {
         let mut names = Vec::new();
         for part in &self.parts.layer_data {
@@ -291,9 +291,9 @@ fn check_memory(headers: &[Header]) -> Result<(), String> {
             .and_then(|part| bytes.checked_add(part))
             .ok_or_else(|| format!("its header claims {width}x{height} pixels"))?;
     }
-    Vec::<u8>::new()
-        .try_reserve_exact(bytes)
-        .map_err(|_| format!("its header claims {} MiB of pixels, more than there is memory", bytes >> 20))
+    Vec::<u8>::new().try_reserve_exact(bytes).map_err(|_| {
+        format!("its header claims {} MiB of pixels, more than the available memory", bytes >> 20)
+    })
 }
 
 /// Reads a flat part.

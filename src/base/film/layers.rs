@@ -19,7 +19,7 @@ pub struct Film {
 }
 
 /// Standard attributes `worldToCamera` and `worldToNDC` of OpenEXR. Matrices are stored by rows and multiply row
-/// vectors from the right, as in Imath. World coordinates are those of the scene file.
+/// vectors from the right, as in Imath. World coordinates are the coordinates of the scene file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CameraMatrices {
     /// Transform to camera coordinates: x to the right, y up, z forward.
@@ -48,13 +48,13 @@ impl Film {
     pub fn check_sizes(&self) -> Result<(), ImageError> {
         let window = [self.window.width, self.window.height];
         if !self.window.is_valid() {
-            let what = "the rendered window does not lie on the film".to_owned();
+            let what = "the rendered window lies outside the image".to_owned();
             return Err(ImageError::Size { what, sizes: [window, self.window.film] });
         }
         let layers = self.layers.iter().map(|layer| (layer.name.as_str(), layer.size()));
         for (name, (size, count)) in std::iter::once(("", self.color.size())).chain(layers) {
             if size != window || count as u64 != self.window.pixel_count() {
-                let what = format!("layer `{name}` and the film's window differ in size");
+                let what = format!("layer `{name}` and the image differ in size");
                 return Err(ImageError::Size { what, sizes: [size, window] });
             }
         }

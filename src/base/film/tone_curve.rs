@@ -15,7 +15,7 @@ use glam::{Mat3, Vec3};
 /// A curve from exposed radiance to display values.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ToneCurve {
-    /// Khronos PBR Neutral: highlights are compressed, other colours are those of the standard view.
+    /// Khronos PBR Neutral: highlights are compressed, other colours equal the standard view.
     #[default]
     Neutral,
     /// Clip at 1, and sRGB.

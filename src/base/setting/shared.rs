@@ -12,8 +12,8 @@ pub static SHARE: Spec =
 /// Number of patches of eye samples.
 pub static PATCHES: Spec = Spec::new(
     "patches",
-    "Approximate number of patches of eye samples. Sixteen samples of a patch share a cut, from which the others are \
-     reconstructed",
+    "Approximate number of patches of eye samples. Sixteen samples of a patch share a cut, which also lights the \
+     other samples",
     "Lightcuts",
 )
 .at_least(1.0)
@@ -22,16 +22,12 @@ pub static PATCHES: Spec = Spec::new(
 /// Compensation for light lost to clamping.
 pub static COMPENSATION: Spec = Spec::new(
     "compensation",
-    "Find the light that clamping takes by tracing short rays; it matters most in creases",
+    "Recover clamped light by tracing short rays. The effect is largest in creases",
     "Lightcuts",
 )
 .values(&["off", "on"])
 .judged_by(JudgedBy::Light);
 
 /// Images that show how the image was made.
-pub static INSPECT: Spec = Spec::new(
-    "inspect",
-    "Write further layers to the OpenEXR file, and further PNG files, that show how the image was made",
-    "",
-)
-.flag();
+pub static INSPECT: Spec =
+    Spec::new("inspect", "Write additional layers and PNG files that show how the image was made", "").flag();

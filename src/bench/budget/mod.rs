@@ -22,7 +22,7 @@ use world::view::{Framing, View};
 
 pub(super) const BENCHMARK: Benchmark = Benchmark {
     name: "budget",
-    about: "Processor time of a picture by step, and of Embree alone for rays like those of its eye pass",
+    about: "Processor time of an image by step, and time of Embree alone for rays as in its eye pass",
     kind: Kind::Parts { needs_scene: true, run },
 };
 

@@ -78,7 +78,7 @@ fn bare(rounds: &[Round]) -> Table {
         figures: ray_figures(),
         ..table(
             "Bare Embree",
-            "Embree's queries alone, on one thread: packets of sixteen rays like those of the eye pass's first samples, \
+            "Embree's queries alone, on one thread: packets of sixteen rays, as for the first samples of the eye pass, \
              made before. The estimate prices the rays that the eye pass reports. Ratio: time of the eye pass over \
              this time.",
             "rays",

@@ -36,8 +36,8 @@ const MAX_GROWTH: f64 = 1.1;
 
 const LEGEND: &str = "Small scenes in which one quantity is taken to its extremes, with every method, over several seeds. \
     Errors are relative root mean squares without the worst pixel of a thousand and the reference's noise. Behind the \
-    stroke is the image's mean over the reference's. If an extreme changes the image by no more than a factor, the \
-    reference is that of the ordinary scene; otherwise it is each scene's own. The scenes lie beside this page.";
+    stroke is the image's mean over the reference's. If an extreme changes the image only by a factor, errors are \
+    measured against the reference of the ordinary scene; otherwise each scene has its own. The scenes are beside this page.";
 
 const GROWTH: &str = "Largest error along a curve over the error of the ordinary scene, and its place. An asterisk marks more than 1.1.";
 

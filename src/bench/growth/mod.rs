@@ -20,7 +20,7 @@ use world::view::View;
 
 pub(super) const BENCHMARK: Benchmark = Benchmark {
     name: "growth",
-    about: "How time and error grow with the picture, with lamps and with triangles",
+    about: "How time and error grow with the image, with lamps and with triangles",
     kind: Kind::Study { scenes: Scenes::Files(&["cornell", "nave"]), pixels: [512, 512], run },
 };
 

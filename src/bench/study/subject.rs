@@ -33,7 +33,7 @@ impl Study<'_> {
         let warnings = warnings.iter().filter(|w| w.severity == Severity::Warning).count();
         if warnings > 0 {
             let path = path.display();
-            (self.say)(&format!("{path}: {warnings} things are not modelled; `info` lists them"));
+            (self.say)(&format!("{path}: {warnings} things are not supported; `info` lists them"));
         }
         let scene = &mut session.world.scene;
         // The hash does not depend on the paths of the files.

@@ -55,7 +55,7 @@ pub const CLAIMS: [Claim; 7] = [
         range: None,
     },
     Claim {
-        what: "LWalk2, a frame of a walk-through by records kept against the picture alone (281 frames: 18 s for 82 s)",
+        what: "LWalk2, a frame of a walk with kept records against the image alone (281 frames: 18 s for 82 s)",
         of: ["walk, a frame", "default"],
         range: Some([4.5, 4.6]),
     },

@@ -12,8 +12,8 @@ use base::setting::JudgedBy;
 use serde_json::json;
 
 /// Caption of the effects of knobs.
-const TOGETHER: &str = "Factors by which error and time change from a knob's coarsest to its finest level while all others \
-    vary in a designed sample, with 95 % confidence intervals in brackets. The error is that of light. The fit is linear in \
+const TOGETHER: &str = "Factors by which error and time change from a knob's coarsest to its finest level. All other knobs \
+    vary in a designed sample. Brackets are 95 % confidence intervals. The error is the error of light. The fit is linear in \
     logarithms from level to level; curvature counts as noise. If there are fewer samples than knobs, effects of different \
     knobs may be mistaken for each other.";
 

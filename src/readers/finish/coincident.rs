@@ -29,8 +29,10 @@ pub fn drop_coincident_emitters(
         });
         let dropped = before - mesh.triangles.len();
         if dropped > 0 {
-            let what =
-                format!("{dropped} triangles of the emitter \"{}\" lie on others that emit", mesh.name);
+            let what = format!(
+                "{dropped} triangles of the emitter \"{}\" coincide with triangles of another emitter",
+                mesh.name
+            );
             log.warn(
                 place,
                 what,

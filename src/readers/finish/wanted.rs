@@ -31,7 +31,7 @@ pub fn choose(draft: &mut Draft, log: &mut Log) -> Result<(), SceneError> {
                 None => {
                     let what =
                         format!("the mesh \"{}\" has no attribute \"{name}\"{}", mesh.name, others(&given));
-                    log.warn(&place, what, "white stands in")?;
+                    log.warn(&place, what, "white is used instead")?;
                 }
             }
         }

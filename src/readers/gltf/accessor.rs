@@ -37,7 +37,7 @@ impl GltfFile {
         let accessor = self.get(index, "accessor")?;
         let component = self.component(accessor, index, N, what)?;
         if component == ComponentType::U32 {
-            return Err(self.misfit(index, what, "is of another type than it should be"));
+            return Err(self.misfit(index, what, "has the wrong type"));
         }
         let number = |bytes: &[u8]| number(component, bytes, accessor.normalized);
         self.numbers(accessor, index, component.size(), what, number)
@@ -52,7 +52,7 @@ impl GltfFile {
         let accessor = self.get(index, "accessor")?;
         let component = self.component(accessor, index, N, what)?;
         if !matches!(component, ComponentType::U8 | ComponentType::U16 | ComponentType::U32) {
-            return Err(self.misfit(index, what, "is of another type than it should be"));
+            return Err(self.misfit(index, what, "has the wrong type"));
         }
         self.numbers(accessor, index, component.size(), what, unsigned)
     }
@@ -74,11 +74,7 @@ impl GltfFile {
             Checked::Valid(Type::Mat2 | Type::Mat3) | Checked::Invalid => false,
             Checked::Valid(kind) => n == kind.multiplicity(),
         };
-        if fits {
-            Ok(component.0)
-        } else {
-            Err(self.misfit(index, what, "is of another type than it should be"))
-        }
+        if fits { Ok(component.0) } else { Err(self.misfit(index, what, "has the wrong type")) }
     }
 
     fn misfit(&self, index: Index<Accessor>, what: &str, problem: &str) -> SceneError {
@@ -110,7 +106,7 @@ impl GltfFile {
             }
             None if accessor.count.0 <= MAX_ZEROS => vec![[T::default(); N]; accessor.count.0 as usize],
             None => {
-                return Err(self.misfit(index, what, "claims to have more elements than any real model"));
+                return Err(self.misfit(index, what, "claims more elements than any real model has"));
             }
         };
         if let Some(sparse) = &accessor.sparse {

@@ -99,7 +99,7 @@ impl Viewer<'_> {
             let mut tracks = animation::tracks(self.document, animation, is_on_the_way)?;
             tracks.retain(Track::moves);
             if !self.is_posed && tracks.len() < animation.channels.len() {
-                let what = "the animation of anything but the camera is not modelled";
+                let what = "the animation of anything but the camera is not supported";
                 report.lacks(
                     what,
                     "it stands still; --frame chooses its pose, or `time` of a mesh in a TOML scene",
@@ -138,7 +138,7 @@ impl Viewer<'_> {
         for animation in self.document.root.animations.iter().skip(usize::from(self.is_posed)) {
             if animation.channels.iter().any(is_still) {
                 let name = animation.name.as_deref().unwrap_or_default();
-                let what = "the animation of anything but the camera is not modelled";
+                let what = "the animation of anything but the camera is not supported";
                 report.lacks(
                     what,
                     "it stands still; --frame chooses its pose, or `time` of a mesh in a TOML scene",
@@ -168,7 +168,7 @@ impl Viewer<'_> {
         };
         let Lens { half_height, aspect: _, near, far, projection } = *lens;
         if !(half_height > 0.0 && half_height.is_finite() && near >= 0.0 && near < far) {
-            let what = format!("a film half of {half_height} high, near {near} and far {far} make no view");
+            let what = format!("half height {half_height}, near {near} and far {far} make no valid view");
             return Err(self.document.wrong(what));
         }
         let tan_half_x = half_height * f64::from(resolution[0]) / f64::from(resolution[1]);

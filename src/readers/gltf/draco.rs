@@ -60,7 +60,7 @@ fn decode(
 ) -> Result<(), String> {
     let accessor = |index: Index<Accessor>| {
         let accessor = root.accessors.get(index.value());
-        accessor.ok_or_else(|| format!("is that of accessor {}, which does not exist", index.value()))
+        accessor.ok_or_else(|| format!("belongs to accessor {}, which does not exist", index.value()))
     };
     let index = primitive.indices.ok_or("has no accessor of indices")?;
     let indices = accessor(index)?;

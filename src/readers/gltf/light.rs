@@ -37,7 +37,7 @@ pub(super) fn read(
         return Err(document.wrong(format!("{name} has no direction")));
     };
     if light.range.is_some_and(f32::is_finite) {
-        report.note("the range of lights is not modelled", "they shine as far as light does", name);
+        report.note("the range of lights is not supported", "lights reach any distance", name);
     }
     let position = Vec3::ZERO;
     let light = match (&light.type_, &light.spot) {
@@ -49,7 +49,7 @@ pub(super) fn read(
                 return Err(document.wrong(format!("{name}: the angles {inner} and {outer} make no cone")));
             }
             let what = "the edges of spot lights are linear in the angle, not smooth in its cosine";
-            report.note(what, "their penumbras differ a little", name);
+            report.note(what, "penumbras differ slightly", name);
             DeltaLight::Spot {
                 position,
                 direction,
@@ -59,7 +59,7 @@ pub(super) fn read(
                 image: None,
             }
         }
-        _ => return Err(document.wrong(format!("{name} is of no known type"))),
+        _ => return Err(document.wrong(format!("{name} has an unknown type"))),
     };
     Ok((light, to_world.transform_point3(DVec3::ZERO)))
 }

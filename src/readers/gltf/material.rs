@@ -72,7 +72,7 @@ impl Importer<'_> {
         let sets: Vec<u32> =
             slots.into_iter().flatten().map(|info| TextureUse::of(info).set).chain(normal).collect();
         if sets.windows(2).any(|pair| pair[0] != pair[1]) {
-            let what = "a material with several sets of texture coordinates is not modelled";
+            let what = "a material with several sets of texture coordinates is not supported";
             self.report.lacks(what, "the first is used", name);
         }
         sets.first().copied().unwrap_or(0)
@@ -90,7 +90,7 @@ impl Importer<'_> {
         let is_unlit = extensions.is_some_and(|e| e.unlit.is_some());
         let (factor, texture) = match is_unlit {
             true => {
-                self.report.lacks("unlit materials are not modelled", "they shine in their colour", name);
+                self.report.lacks("unlit materials are not supported", "they emit their colour", name);
                 let base = &source.pbr_metallic_roughness;
                 let [r, g, b, _] = base.base_color_factor.0;
                 (Rgb::new(r, g, b), &base.base_color_texture)
@@ -149,8 +149,8 @@ impl Importer<'_> {
         let transmits = transmission.is_some_and(|t| t.transmission_factor.0 >= 0.5);
         if is_sheet && transmission.is_some_and(|t| t.transmission_factor.0 > 0.0) && !(is_smooth && is_clear)
         {
-            let what = "sheets that transmit in part, or are rough, are not modelled";
-            self.report.lacks(what, "they are smooth, and clear from a transmission of .5", name);
+            let what = "sheets that transmit in part, or are rough, are not supported";
+            self.report.lacks(what, "they are smooth, and clear from a transmission of 0.5", name);
         }
         if transmits && (is_sheet || is_smooth && is_clear) {
             let white = Reflectance::Constant(Rgb::ONE);
@@ -188,12 +188,12 @@ impl Importer<'_> {
             principled.clearcoat_gloss = ((0.1 - alpha) / 0.099).clamp(0.0, 1.0);
             for key in ["clearcoatRoughnessTexture", "clearcoatNormalTexture"] {
                 if coat.get(key).is_some() {
-                    self.report.lacks(&format!("{key} is not modelled"), "it is left out", name);
+                    self.report.lacks(&format!("{key} is not supported"), "it is left out", name);
                 }
             }
             self.report.lacks(
                 "a clear coat reflects a quarter of what it should",
-                "as principled ones do",
+                "as clear coats of principled materials do",
                 name,
             );
         }
@@ -202,11 +202,7 @@ impl Importer<'_> {
             let channels = colour.into_iter().flatten().filter_map(Value::as_f64);
             let strength = channels.fold(0.0, f64::max).clamp(0.0, 1.0) as f32;
             principled.sheen = Share::Constant(strength);
-            self.report.lacks(
-                "sheen of a colour, roughness or texture of its own",
-                "it is white and soft",
-                name,
-            );
+            self.report.lacks("sheen with a colour, roughness or texture", "it is white and soft", name);
         }
         if let Some(anisotropy) = anisotropy {
             self.stretch(anisotropy, principled, name)?;
@@ -301,7 +297,7 @@ impl Importer<'_> {
             (Checked::Valid(AlphaMode::Mask), _) => {
                 let cutoff = source.alpha_cutoff.as_ref().map_or(0.5, |cutoff| cutoff.0);
                 if colours == VertexColours::WithAlpha {
-                    let what = "opacities of vertices that a mask cuts are not modelled";
+                    let what = "opacities of vertices that a mask cuts are not supported";
                     self.report.lacks(what, "they are 1", name);
                 }
                 // A point is opaque if its alpha times the factor reaches the cutoff.
@@ -330,7 +326,7 @@ impl Importer<'_> {
             match key.as_str() {
                 key if !RAW.contains(&key) => {
                     self.report.lacks(
-                        &format!("the extension {key} is not modelled"),
+                        &format!("the extension {key} is not supported"),
                         "it is left out",
                         name,
                     );
@@ -341,10 +337,14 @@ impl Importer<'_> {
         if let Some(specular) = &extensions.specular {
             let colour = Rgb::from(specular.specular_color_factor.0);
             if colour.max_element() != colour.min_element() {
-                self.report.lacks("coloured reflection of dielectrics", "it is white", name);
+                self.report.lacks("coloured reflection of dielectrics", "the reflection is white", name);
             }
             if specular.specular_texture.is_some() || specular.specular_color_texture.is_some() {
-                self.report.lacks("textures of dielectrics' reflection", "their factors stand alone", name);
+                self.report.lacks(
+                    "textures of the reflection of dielectrics",
+                    "only the factors are used",
+                    name,
+                );
             }
         }
         if source.occlusion_texture.is_some() {

@@ -28,7 +28,7 @@ pub(super) fn read(
     let mode = match &primitive.mode {
         Checked::Valid(mode @ (Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan)) => *mode,
         Checked::Valid(_) => {
-            report.lacks("points and lines are not modelled", "they are left out", what);
+            report.lacks("points and lines are not supported", "they are left out", what);
             return Ok(None);
         }
         Checked::Invalid => return Err(document.wrong(format!("{what}: its mode is unknown"))),

@@ -124,7 +124,7 @@ pub fn import(
         report.lacks(what, "it is left out", name);
     }
     for name in document::unread_extensions(&document) {
-        report.lacks(&format!("the extension {name} is not modelled"), "it is left out", "");
+        report.lacks(&format!("the extension {name} is not supported"), "it is left out", "");
     }
     let is_posed = time.is_some();
     let viewer =

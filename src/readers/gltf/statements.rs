@@ -28,7 +28,7 @@ pub(super) const STATEMENTS: &[Statement] = &[
     no_effect("KHR_xmp_json_ld", "metadata, anywhere"),
     read("asset.version", "2.0; another one is an error"),
     read("asset.minVersion", "more than 2.0 is an error"),
-    read("asset.generator", "units of the lamps of Blender's exporter"),
+    read("asset.generator", "units of lights from Blender's exporter"),
     no_effect("asset.copyright", ""),
     read("extensionsUsed", "an extension that is not read is named"),
     read("extensionsRequired", "an extension that is not read is an error"),
@@ -67,7 +67,7 @@ pub(super) const STATEMENTS: &[Statement] = &[
     read("meshes.primitives.targets.TANGENT", ""),
     read("meshes.primitives.KHR_draco_mesh_compression.bufferView", ""),
     read("meshes.primitives.KHR_draco_mesh_compression.attributes", ""),
-    named("meshes.primitives.KHR_materials_variants", "the default material stands"),
+    named("meshes.primitives.KHR_materials_variants", "the default material is used"),
     read("meshes.weights", ""),
     read("accessors.bufferView", ""),
     read("accessors.byteOffset", ""),
@@ -112,13 +112,13 @@ pub(super) const STATEMENTS: &[Statement] = &[
     read("samplers.magFilter", ""),
     no_effect("samplers.minFilter", "colours are averaged over pixels"),
     read("samplers.wrapS", ""),
-    read("samplers.wrapT", "as `wrapS`, with a warning where they differ"),
+    read("samplers.wrapT", "as `wrapS`, with a warning if they differ"),
     read("textures.sampler", ""),
     read("textures.source", ""),
-    read("textures.EXT_texture_webp.source", "where there is no `source`"),
-    named("textures.KHR_texture_basisu", "the `source` stands; without one the texture is left out"),
-    named("textures.EXT_texture_avif", "the `source` stands; without one the texture is left out"),
-    named("textures.MSFT_texture_dds", "the `source` stands; without one the texture is left out"),
+    read("textures.EXT_texture_webp.source", "if there is no `source`"),
+    named("textures.KHR_texture_basisu", "the `source` is used; without one the texture is left out"),
+    named("textures.EXT_texture_avif", "the `source` is used; without one the texture is left out"),
+    named("textures.MSFT_texture_dds", "the `source` is used; without one the texture is left out"),
     read("textureInfo.index", ""),
     read("textureInfo.texCoord", "one set per material; another is named"),
     read("textureInfo.scale", "of normal maps"),
@@ -155,8 +155,8 @@ pub(super) const STATEMENTS: &[Statement] = &[
     named("materials.KHR_materials_sheen.sheenRoughnessTexture", "sheen is white and soft"),
     read("materials.KHR_materials_specular.specularFactor", ""),
     read("materials.KHR_materials_specular.specularColorFactor", "its strength; other hues are named"),
-    named("materials.KHR_materials_specular.specularTexture", "the factors stand alone"),
-    named("materials.KHR_materials_specular.specularColorTexture", "the factors stand alone"),
+    named("materials.KHR_materials_specular.specularTexture", "only the factors are used"),
+    named("materials.KHR_materials_specular.specularColorTexture", "only the factors are used"),
     read(
         "materials.KHR_materials_transmission.transmissionFactor",
         "sheets transmit fully or not at all, with a warning",
@@ -197,11 +197,11 @@ pub(super) const STATEMENTS: &[Statement] = &[
     read("KHR_lights_punctual.lights.intensity", ""),
     read("KHR_lights_punctual.lights.spot.innerConeAngle", ""),
     read("KHR_lights_punctual.lights.spot.outerConeAngle", ""),
-    no_effect("KHR_lights_punctual.lights.range", "lamps shine as far as light does"),
-    named("KHR_lights_punctual.lights.EXT_lights_ies", "the lamp shines evenly"),
-    named("KHR_materials_variants", "the default materials stand"),
+    no_effect("KHR_lights_punctual.lights.range", "lights reach any distance"),
+    named("KHR_lights_punctual.lights.EXT_lights_ies", "the light shines evenly"),
+    named("KHR_materials_variants", "the default materials are used"),
     named("EXT_lights_image_based", ""),
-    named("EXT_lights_ies", "lamps shine evenly"),
+    named("EXT_lights_ies", "lights shine evenly"),
 ];
 
 /// Statements that are named where materials and textures are read.
@@ -250,7 +250,7 @@ impl Unread {
                         ("extensions", Value::Object(extensions)) => {
                             for (name, value) in extensions {
                                 self.extensions.insert(name.clone());
-                                let what = format!("the extension {name} is not modelled");
+                                let what = format!("the extension {name} is not supported");
                                 self.look_at(name, value, path, owner, Some(what));
                             }
                         }
@@ -362,8 +362,8 @@ mod tests {
             ("materials.shine is not read", "material 0"),
             ("meshes.primitives.attributes.FOO_n is not read", "mesh 0"),
             ("meshes.primitives.targets.COLOR_0 is not read", "mesh 0"),
-            ("the extension EXT_a is not modelled", "lamp"),
-            ("the extension EXT_d is not modelled", "material 0"),
+            ("the extension EXT_a is not supported", "lamp"),
+            ("the extension EXT_d is not supported", "material 0"),
         ];
         assert_eq!(found.findings, expected.map(|(what, owner)| (what.to_owned(), owner.to_owned())));
         assert!(found.extensions.contains("EXT_d") && unread(b"{").findings.is_empty());

@@ -86,7 +86,7 @@ impl Importer<'_> {
             Checked::Valid(WrappingMode::Repeat) | Checked::Invalid => Wrap::Repeat,
         });
         if wrap != wrap_v {
-            self.report.lacks("textures that extend differently along u and v", "v is as u", name);
+            self.report.lacks("textures with different wrap modes along u and v", "v is as u", name);
         }
         let filter = match sampler.mag_filter {
             Some(Checked::Valid(MagFilter::Nearest)) => Filter::Nearest,

@@ -34,7 +34,7 @@ pub(crate) struct MapOptions {
     /// Factor on a relief.
     pub bump: f32,
     pub channel: Option<MapChannel>,
-    /// Options that are not modelled, with what stands in.
+    /// Options that are not supported, with what stands in.
     pub unmodelled: Vec<(String, &'static str)>,
 }
 

@@ -20,7 +20,7 @@ pub(crate) struct MapStatement {
     pub line: u32,
 }
 
-/// A feature of a material that is not modelled.
+/// A feature of a material that is not supported.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Unmodelled {
     pub what: String,
@@ -148,7 +148,7 @@ impl ClassicMaterial {
         self.dissolve.or(self.transparency.map(|(share, _)| 1.0 - share)).unwrap_or(1.0)
     }
 
-    /// Adds a feature that is not modelled.
+    /// Adds a feature that is not supported.
     pub fn lacks(&mut self, what: String, fallback: &str, line: u32) {
         self.unmodelled.push(Unmodelled { what, fallback: fallback.to_owned(), line });
     }
@@ -157,9 +157,13 @@ impl ClassicMaterial {
         self.model = if (0.0..=10.0).contains(&number) && number.fract() == 0.0 { number as u32 } else { 2 };
         match number {
             0.0 => self.lacks("illum 0, a colour without light".to_owned(), "the surface is matte", line),
-            10.0 => self.lacks("illum 10, shadows without a surface".to_owned(), "it is as illum 2", line),
+            10.0 => self.lacks(
+                "illum 10, shadows without a surface".to_owned(),
+                "the surface is as with illum 2",
+                line,
+            ),
             _ if self.model as f32 != number => {
-                self.lacks(format!("illum {number}"), "it is as illum 2", line);
+                self.lacks(format!("illum {number}"), "the surface is as with illum 2", line);
             }
             _ => {}
         }
@@ -169,7 +173,7 @@ impl ClassicMaterial {
     fn colour(&mut self, keyword: &str, rest: &[u8], line: u32) -> Result<Rgb, String> {
         match values(rest).next() {
             Some(b"spectral") => {
-                self.lacks(format!("{keyword} by a spectrum"), "a grey of 0.5 stands in", line);
+                self.lacks(format!("{keyword} by a spectrum"), "a grey of 0.5 is used instead", line);
                 return Ok(Rgb::splat(0.5));
             }
             Some(b"xyz") => {

@@ -29,7 +29,7 @@ pub(crate) const MTL: &[Statement] = &[
     statement("Ni", Fate::Read, "index of refraction of glass"),
     statement("Tf", Fate::Read, "factor on light through glass, at each surface; else named unless 0 or 1"),
     statement("d", Fate::Read, "opacity"),
-    statement("Tr", Fate::Read, "1 - opacity, where there is no `d`"),
+    statement("Tr", Fate::Read, "1 - opacity, if there is no `d`"),
     statement("Pr", Fate::Read, "roughness of a principled material"),
     statement("Pm", Fate::Read, "share of metal"),
     statement("Ps", Fate::Read, "sheen"),

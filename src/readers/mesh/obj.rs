@@ -31,7 +31,7 @@ const MISSING: u32 = u32::MAX;
 const MAX_CHAIN: usize = 16;
 
 /// Reads the selected part of the OBJ text `bytes`; `path` is for messages. `remarks` gets a warning for each keyword
-/// that is not modelled.
+/// that is not supported.
 pub fn read(
     bytes: &[u8],
     path: &Path,

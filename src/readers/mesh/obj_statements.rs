@@ -1,4 +1,4 @@
-//! Statements of OBJ files, and the report of those that are not modelled.
+//! Statements of OBJ files, and the report of those that are not supported.
 
 use super::wavefront::{name, shown};
 use crate::error::{Location, Warning};
@@ -24,7 +24,7 @@ pub(super) const OBJ: &[Statement] = &[
         Fate::Read,
         "material libraries: several names, or names with spaces, by which files exist",
     ),
-    statement("s", Fate::Named, "faces are flat where the file has no normals; else normals count"),
+    statement("s", Fate::Named, "faces are flat if the file has no normals; else normals count"),
     statement("l", Fate::Named, "lines are left out"),
     statement("p", Fate::Named, "points are left out"),
     statement("surf", Fate::Named, "free-form surfaces are left out; export polygons"),
@@ -36,13 +36,13 @@ pub(super) const OBJ: &[Statement] = &[
     statement("call", Fate::Named, "the other file is left out"),
     statement("csh", Fate::Named, "no command is run"),
     statement("lod", Fate::Named, "elements of every level of detail are there"),
-    statement("usemap", Fate::Named, "textures are those of the materials"),
-    statement("maplib", Fate::Named, "textures are those of the materials"),
+    statement("usemap", Fate::Named, "textures come from the materials"),
+    statement("maplib", Fate::Named, "textures come from the materials"),
     statement("shadow_obj", Fate::Named, "the mesh casts its own shadow"),
     statement("trace_obj", Fate::Named, "the mesh is reflected as it is"),
     statement("bevel", Fate::Named, "edges are sharp"),
-    statement("c_interp", Fate::Named, "colours are those of the faces' materials"),
-    statement("d_interp", Fate::Named, "opacities are those of the faces' materials"),
+    statement("c_interp", Fate::Named, "colours come from the materials of the faces"),
+    statement("d_interp", Fate::Named, "opacities come from the materials of the faces"),
     statement("mg", Fate::NoEffect, "merging of free-form surfaces"),
     statement("vp", Fate::NoEffect, "points of free-form curves"),
     statement("cstype", Fate::NoEffect, "kind of free-form curves and surfaces"),
@@ -65,12 +65,12 @@ pub(super) const OBJ: &[Statement] = &[
 /// Maximum number of keywords that are reported.
 const MAX_REPORTED: usize = 10;
 
-/// Keywords that are not modelled, with the line of each one's first use.
+/// Keywords that are not supported, with the line of each one's first use.
 #[derive(Default)]
 pub(super) struct UnreadKeywords(Vec<(Vec<u8>, u32)>);
 
 impl UnreadKeywords {
-    /// Adds a statement that the reader does not use, unless it cannot change a picture.
+    /// Adds a statement that the reader does not use, unless it cannot change an image.
     pub fn add(&mut self, word: &[u8], rest: &[u8], line: u32) {
         if word.is_empty() || word[0] == b'#' || self.0.len() > MAX_REPORTED {
             return;
@@ -94,13 +94,17 @@ impl UnreadKeywords {
         for (i, (word, line)) in self.0.iter().filter(|(word, _)| counts(word)).enumerate() {
             let place = Location::line(path, *line);
             if i == MAX_REPORTED {
-                remarks.push(Warning::new(place, "further statements are not modelled", "they are left out"));
+                remarks.push(Warning::new(
+                    place,
+                    "further statements are not supported",
+                    "they are left out",
+                ));
                 break;
             }
             let word = shown(word);
             let note = OBJ.iter().find(|statement| statement.name == word).map(|statement| statement.note);
             let what = match note {
-                Some(_) => format!("the statement \"{word}\" is not modelled"),
+                Some(_) => format!("the statement \"{word}\" is not supported"),
                 None => format!("the statement \"{word}\" is unknown"),
             };
             remarks.push(Warning::new(place, what, note.unwrap_or("it is left out")));

@@ -64,8 +64,9 @@ impl SoupBuilder {
             match words.next().map(str::to_ascii_lowercase).as_deref() {
                 Some("vertex") => {
                     let numbers: Vec<f32> = words.map_while(|word| word.parse().ok()).collect();
-                    let corner =
-                        numbers.try_into().map_err(|_| wrong("a vertex has not three numbers".into()))?;
+                    let corner = numbers
+                        .try_into()
+                        .map_err(|_| wrong("a vertex does not have three numbers".into()))?;
                     corners.push(corner);
                 }
                 Some("endloop") => match corners[..] {
@@ -76,7 +77,7 @@ impl SoupBuilder {
                     _ => return Err(wrong(format!("a facet has {} corners, not three", corners.len()))),
                 },
                 Some("solid" | "facet" | "outer" | "endfacet" | "endsolid") | None => {}
-                Some(word) => return Err(wrong(format!("\"{word}\" is no statement of an STL file"))),
+                Some(word) => return Err(wrong(format!("\"{word}\" is not a statement of STL files"))),
             }
         }
         Ok(())

@@ -78,7 +78,7 @@ impl Object {
 
     /// Warns of every property and child that no converter has asked for, except for those without effect.
     pub fn report_unused(&self, log: &mut Log) -> Result<(), SceneError> {
-        let of = || format!("of {} \"{}\" is not modelled", self.tag, self.plugin);
+        let of = || format!("of {} \"{}\" is not supported", self.tag, self.plugin);
         let matters = |name: &str| fate_of_parameter(&self.tag, &self.plugin, name) != Fate::NoEffect;
         let unused = self.properties.iter().filter(|p| !p.used.replace(true));
         for property in unused.filter(|p| matters(&p.name)) {

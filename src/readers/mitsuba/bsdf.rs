@@ -51,7 +51,7 @@ impl Converter<'_> {
 
     fn material(&mut self, bsdf: &Object, depth: u32) -> Result<Material, SceneError> {
         if depth > 8 {
-            return Err(bsdf.place.wrong("bsdfs refer to each other", "break the circle"));
+            return Err(bsdf.place.wrong("bsdfs refer to each other", "break the cycle"));
         }
         let name = bsdf.id.clone().unwrap_or_else(|| match bsdf.place.line {
             Some(line) => format!("{}:{line}", bsdf.plugin),
@@ -65,8 +65,8 @@ impl Converter<'_> {
                 diffuse(name, self.reflectance(bsdf, parameter, 0.5)?)
             }
             "roughdiffuse" => {
-                let what = "the bsdf \"roughdiffuse\" is not modelled";
-                self.log.warn(&bsdf.place, what, "it is Lambertian")?;
+                let what = "the bsdf \"roughdiffuse\" is not supported";
+                self.log.warn(&bsdf.place, what, "a Lambertian surface is used instead")?;
                 diffuse(name, self.reflectance(bsdf, "reflectance", 0.5)?)
             }
             "difftrans" => self.diffuse_transmitter(bsdf, name)?,
@@ -89,8 +89,8 @@ impl Converter<'_> {
             "coating" | "roughcoating" => self.coated(bsdf, depth)?,
             "mixturebsdf" => self.mixed(bsdf, depth)?,
             other => {
-                let what = format!("the bsdf \"{other}\" is not modelled");
-                self.log.warn(&bsdf.place, what, "a diffuse grey of 0.5 stands in")?;
+                let what = format!("the bsdf \"{other}\" is not supported");
+                self.log.warn(&bsdf.place, what, "a diffuse grey of 0.5 is used instead")?;
                 return Ok(diffuse(name, Reflectance::Constant(Rgb::splat(0.5))));
             }
         };
@@ -102,7 +102,7 @@ impl Converter<'_> {
     fn two_sided(&mut self, bsdf: &Object, depth: u32) -> Result<Material, SceneError> {
         let nested = self.nested(bsdf, depth)?;
         if let [Lobe::Dielectric { .. } | Lobe::RoughDielectric { .. }, ..] = nested.lobes[..] {
-            self.log.warn(&bsdf.place, "twosided stands around a transmitting bsdf", "it is left out")?;
+            self.log.warn(&bsdf.place, "twosided contains a transmitting bsdf", "it is left out")?;
         }
         Ok(Material { two_sided: true, ..nested })
     }
@@ -120,7 +120,7 @@ impl Converter<'_> {
             (opacity, Some(_)) => {
                 self.log.warn(
                     &bsdf.place,
-                    "a mask of a mask is not modelled",
+                    "a mask of a mask is not supported",
                     "the inner one is left out",
                 )?;
                 opacity
@@ -180,7 +180,7 @@ impl Converter<'_> {
         let found = texture.map(|texture| self.texture(&texture, 0)).transpose()?;
         let relief = match found {
             Some(Reflectance::Textured { texture, .. }) if !self.contents.is_image(texture) => {
-                let what = "a relief by attributes of a mesh is not modelled";
+                let what = "a relief from mesh attributes is not supported";
                 self.log.warn(&bsdf.place, what, "it is left out")?;
                 None
             }
@@ -195,7 +195,7 @@ impl Converter<'_> {
         if relief.is_some() && nested.relief.is_some() {
             self.log.warn(
                 &bsdf.place,
-                "a relief of a relief is not modelled",
+                "a relief of a relief is not supported",
                 "the inner one is left out",
             )?;
         }
@@ -211,13 +211,13 @@ impl Converter<'_> {
         for name in ["flip_invalid_normals", "use_shadowing_function"] {
             let (is_given, is_on) = (bsdf.has(name), bsdf.boolean(name, true)?);
             if is_given && is_on {
-                self.log.warn(&bsdf.place, format!("\"{name}\" is not modelled"), "it is off")?;
+                self.log.warn(&bsdf.place, format!("\"{name}\" is not supported"), "it is off")?;
             } else if is_on {
                 applied.push(name);
             }
         }
         if !applied.is_empty() {
-            let what = format!("{} of {} are not modelled", applied.join(" and "), bsdf.plugin);
+            let what = format!("{} of {} are not supported", applied.join(" and "), bsdf.plugin);
             self.log.note(&bsdf.place, what, "the relief is up to 1 % darker or brighter");
         }
         Ok(())
@@ -232,10 +232,10 @@ impl Converter<'_> {
             are_shares && weights.len() == nested.len() && weights.iter().sum::<f64>() > 0.0
         });
         let Some(weights) = weights else {
-            let what = format!("the weights \"{text}\" are not those of {} bsdfs", nested.len());
+            let what = format!("the weights \"{text}\" do not fit {} bsdfs", nested.len());
             return Err(bsdf
                 .place
-                .wrong(what, "write a number of 0 or more for each bsdf, with commas between"));
+                .wrong(what, "write a number of 0 or more for each bsdf, separated by commas"));
         };
         let mut parts: Vec<(f64, Material)> = Vec::with_capacity(nested.len() + 1);
         for (weight, nested) in weights.iter().zip(&nested) {
@@ -258,7 +258,7 @@ impl Converter<'_> {
             });
         }
         let Some((_, mixed)) = whole else {
-            return Err(bsdf.place.wrong("all weights are 0", "give one that is more"));
+            return Err(bsdf.place.wrong("all weights are 0", "give at least one weight above 0"));
         };
         Ok(mixed)
     }

@@ -71,12 +71,12 @@ impl Converter<'_> {
             let alpha = match (u, v) {
                 (Roughness::Constant(a), Roughness::Constant(b)) if a != b => {
                     let fallback = "the geometric mean is used, without the direction of highlights";
-                    self.log.warn(&bsdf.place, "anisotropic glass is not modelled", fallback)?;
+                    self.log.warn(&bsdf.place, "anisotropic glass is not supported", fallback)?;
                     Roughness::Constant((a * b).sqrt())
                 }
                 (u, v) if u != v => {
-                    let fallback = "its roughness along u is used both ways";
-                    self.log.warn(&bsdf.place, "anisotropic glass is not modelled", fallback)?;
+                    let fallback = "the roughness along u is used in both directions";
+                    self.log.warn(&bsdf.place, "anisotropic glass is not supported", fallback)?;
                     u
                 }
                 _ => u,
@@ -102,8 +102,12 @@ impl Converter<'_> {
             let alpha = (bsdf.positive("alpha_u", 0.1)? * bsdf.positive("alpha_v", 0.1)?).sqrt();
             (Distribution::Beckmann, alpha)
         };
-        let what = format!("the bsdf \"{}\" is not modelled", bsdf.plugin);
-        self.log.warn(&bsdf.place, what, format!("a {distribution:?} lobe of alpha {alpha:.4} stands in"))?;
+        let what = format!("the bsdf \"{}\" is not supported", bsdf.plugin);
+        self.log.warn(
+            &bsdf.place,
+            what,
+            format!("a {distribution:?} lobe of alpha {alpha:.4} is used instead"),
+        )?;
         let alpha = (alpha as f32).into();
         let lobe = Lobe::Rough { distribution, alpha, fresnel: Fresnel::One, scale };
         Ok(Material { name, diffuse, lobes: vec![lobe], ..Material::default() })
@@ -129,13 +133,13 @@ impl Converter<'_> {
         principled.clearcoat_gloss = match self.share(bsdf, "clearcoat_gloss", 0.0)? {
             Share::Constant(gloss) => gloss,
             Share::Textured { .. } => {
-                self.log.warn(&bsdf.place, "a textured clearcoat_gloss is not modelled", "it is 0.5")?;
+                self.log.warn(&bsdf.place, "a textured clearcoat_gloss is not supported", "it is 0.5")?;
                 0.5
             }
         };
         principled.anisotropic = self.share(bsdf, "anisotropic", 0.0)?;
         if self.share(bsdf, "flatness", 0.0)? != Share::Constant(0.0) {
-            self.log.warn(&bsdf.place, "flatness is not modelled", "it is left out")?;
+            self.log.warn(&bsdf.place, "flatness is not supported", "it is left out")?;
         }
         Ok(Material { name, principled: Some(Box::new(principled)), ..Material::default() })
     }
@@ -159,8 +163,8 @@ impl Converter<'_> {
             None | Some("beckmann") => Distribution::Beckmann,
             Some("ggx") => Distribution::Ggx,
             Some("phong" | "as") => {
-                let fallback = "Beckmann of the same alpha stands in";
-                self.log.warn(&bsdf.place, "the Phong distribution is not modelled", fallback)?;
+                let fallback = "Beckmann with the same alpha is used instead";
+                self.log.warn(&bsdf.place, "the Phong distribution is not supported", fallback)?;
                 Distribution::Beckmann
             }
             Some(other) => {

@@ -49,7 +49,7 @@ impl Converter<'_> {
             "emitter" => self.scene_emitter(&object),
             // `shot` reads sensors and integrators. The others are read where an object refers to them.
             "sensor" | "integrator" | "bsdf" | "texture" => Ok(()),
-            tag => self.log.warn(&object.place, format!("<{tag}> is not modelled"), "it is ignored"),
+            tag => self.log.warn(&object.place, format!("<{tag}> is not supported"), "it is ignored"),
         }
     }
 

@@ -67,7 +67,7 @@ impl Converter<'_> {
             }
             "sky" | "sun" | "sunsky" => self.sky(emitter, to_world.unwrap_or(DMat4::IDENTITY))?,
             other => {
-                let what = format!("the emitter \"{other}\" is not modelled");
+                let what = format!("the emitter \"{other}\" is not supported");
                 self.log.warn(&emitter.place, what, "it gives no light")?;
                 return Ok(());
             }

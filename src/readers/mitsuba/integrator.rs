@@ -37,18 +37,18 @@ impl Converter<'_> {
     /// Returns the settings of an integrator inside `depth` others.
     fn settings(&mut self, integrator: &Object, depth: u32) -> Result<IntegratorSettings, SceneError> {
         if depth > MAX_NESTED {
-            return Err(integrator.place.wrong("integrators refer to each other", "break the circle"));
+            return Err(integrator.place.wrong("integrators refer to each other", "break the cycle"));
         }
         let plugin = integrator.plugin.as_str();
         let is_wrapper = WRAPPERS.contains(&plugin);
         if fate_of_plugin("integrator", plugin) == Fate::Named {
             let stands_in = match is_wrapper {
-                true => "the picture is that of the integrator in it",
+                true => "the image of the nested integrator is rendered",
                 false => "the light of all paths is rendered",
             };
             self.log.warn(
                 &integrator.place,
-                format!("the integrator \"{plugin}\" is not modelled"),
+                format!("the integrator \"{plugin}\" is not supported"),
                 stands_in,
             )?;
         }
@@ -56,7 +56,7 @@ impl Converter<'_> {
             self.of_nested(integrator, depth)?
         } else {
             if !matches!(plugin, "path" | "direct") && fate_of_plugin("integrator", plugin) == Fate::Read {
-                let what = format!("the integrator \"{plugin}\" is another way to the same light");
+                let what = format!("the integrator \"{plugin}\" computes the same light in another way");
                 self.log.note(&integrator.place, what, "--method chooses the way");
             }
             let is_direct = plugin.starts_with("direct");
@@ -72,7 +72,7 @@ impl Converter<'_> {
     /// Returns the settings of the integrator inside a wrapper.
     fn of_nested(&mut self, wrapper: &Object, depth: u32) -> Result<IntegratorSettings, SceneError> {
         if let Some(channels) = wrapper.string("aovs")? {
-            let what = format!("the channels \"{channels}\" are not modelled");
+            let what = format!("the channels \"{channels}\" are not supported");
             self.log.warn(&wrapper.place, what, "they are not written")?;
         }
         match self.only(wrapper, "integrator")? {

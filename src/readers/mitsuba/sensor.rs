@@ -33,7 +33,7 @@ impl Converter<'_> {
         match sensor.plugin.as_str() {
             "perspective" | "thinlens" | "orthographic" => {}
             other => {
-                let what = format!("the sensor \"{other}\" is not modelled");
+                let what = format!("the sensor \"{other}\" is not supported");
                 return Err(sensor.place.wrong(what, "use type=\"perspective\""));
             }
         }
@@ -48,7 +48,11 @@ impl Converter<'_> {
         }
         for offset in ["principal_point_offset_x", "principal_point_offset_y"] {
             if sensor.float(offset)?.is_some_and(|v| v != 0.0) {
-                self.log.warn(&sensor.place, "a shifted principal point is not modelled", "it is centred")?;
+                self.log.warn(
+                    &sensor.place,
+                    "a shifted principal point is not supported",
+                    "it is centred",
+                )?;
             }
         }
         let (projection, tan_half_x) = match sensor.plugin.as_str() {
@@ -96,7 +100,7 @@ impl Converter<'_> {
             _ => axes.iter().any(|a| (a.length_squared() - 1.0).abs() > 1e-3),
         };
         if scales {
-            let fallback = "only that of a parallel projection's width is taken";
+            let fallback = "only the scale of the width of a parallel projection is used";
             self.log.warn(place, "the sensor's to_world scales", fallback)?;
         }
         let (mut right, mut up) = (right, up);
@@ -119,13 +123,13 @@ impl Converter<'_> {
             return Ok(SensorFilm { resolution: [768, 576], crop: None, filter: PixelFilter::GAUSSIAN });
         };
         if fate_of_plugin("film", &film.plugin) != Fate::Read {
-            let what = format!("the film \"{}\" is not modelled", film.plugin);
-            self.log.warn(&film.place, what, "it is an hdrfilm")?;
+            let what = format!("the film \"{}\" is not supported", film.plugin);
+            self.log.warn(&film.place, what, "hdrfilm is used instead")?;
         }
         if let Some(format) = film.string("pixel_format")?
             && !matches!(format.to_lowercase().as_str(), "rgb" | "rgba")
         {
-            let what = format!("the pixel format \"{format}\" is not modelled");
+            let what = format!("the pixel format \"{format}\" is not supported");
             self.log.warn(&film.place, what, "red, green and blue are written")?;
         }
         let size = |name: &str, default: i64| {
@@ -166,7 +170,7 @@ impl Converter<'_> {
             "box" => match object.positive("radius", 0.5)? {
                 0.5 => PixelFilter::Box,
                 radius => {
-                    let what = format!("a box filter of radius {radius} is not modelled");
+                    let what = format!("a box filter of radius {radius} is not supported");
                     self.log.note(&object.place, what, "it is .5");
                     PixelFilter::Box
                 }
@@ -186,8 +190,8 @@ impl Converter<'_> {
                 PixelFilter::Lanczos
             }
             other => {
-                let what = format!("the film's reconstruction filter \"{other}\" is not modelled");
-                self.log.warn(&object.place, what, "a Gaussian of deviation .5 stands in")?;
+                let what = format!("the film's reconstruction filter \"{other}\" is not supported");
+                self.log.warn(&object.place, what, "a Gaussian with deviation 0.5 is used instead")?;
                 object.properties.iter().for_each(|property| property.used.set(true));
                 PixelFilter::GAUSSIAN
             }
@@ -200,7 +204,7 @@ impl Converter<'_> {
     fn usual(&mut self, object: &Object, name: &str, usual: f64) -> Result<(), SceneError> {
         let given = object.float(name)?.unwrap_or(usual);
         if (given - usual).abs() > 1e-3 {
-            let what = format!("a {} filter with {name} = {given} is not modelled", object.plugin);
+            let what = format!("a {} filter with {name} = {given} is not supported", object.plugin);
             self.log.note(&object.place, what, format!("it is {usual:.3}"));
         }
         Ok(())

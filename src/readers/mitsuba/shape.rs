@@ -28,7 +28,7 @@ impl Converter<'_> {
         let [group] = &groups[..] else {
             return Err(instance
                 .place
-                .wrong("an instance of no group, or of several", "refer to one shapegroup"));
+                .wrong("an instance without a group, or with several", "refer to one shapegroup"));
         };
         if group.plugin != "shapegroup" {
             let what = format!("an instance of a shape \"{}\"", group.plugin);
@@ -59,11 +59,11 @@ impl Converter<'_> {
     pub(super) fn report_instances(&mut self) {
         if let (count, Some(place)) = (self.instances.0, &self.instances.1) {
             let what = format!("{count} meshes are placed by instances");
-            self.log.note(place, what, "each is a copy, and takes about 100 bytes of memory a triangle");
+            self.log.note(place, what, "each is a copy, and takes about 100 bytes of memory per triangle");
         }
     }
 
-    /// Returns the source of a mesh, and whether its v counts downwards; `None` for a shape that is not modelled.
+    /// Returns the source of a mesh, and whether its v counts downwards; `None` for a shape that is not supported.
     fn geometry(&mut self, shape: &Object) -> Result<Option<(MeshSource, bool)>, SceneError> {
         let mut v_down = true;
         let geometry = match shape.plugin.as_str() {
@@ -100,7 +100,7 @@ impl Converter<'_> {
                 MeshSource::Ready(shapes::cylinder(p0, p1, shape.positive("radius", 1.0)?))
             }
             other => {
-                let what = format!("the shape \"{other}\" is not modelled");
+                let what = format!("the shape \"{other}\" is not supported");
                 self.log.warn(&shape.place, what, "it is left out")?;
                 return Ok(None);
             }

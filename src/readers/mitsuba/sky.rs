@@ -44,8 +44,8 @@ impl Converter<'_> {
         sky.sun_angle =
             float("sun_aperture", sky.sun_angle)? * float("sun_radius_scale", 1.0)?.max(MIN_RADIUS_SCALE);
         if emitter.boolean("complex_sun", false)? {
-            let what = "a sun of dark limb is not modelled";
-            self.log.warn(&emitter.place, what, "its disc is even and of the same irradiance")?;
+            let what = "limb darkening of the sun is not supported";
+            self.log.warn(&emitter.place, what, "the disc is uniform, with the same irradiance")?;
         }
         sky.check(&emitter.place, self.log)?;
         self.contents.discs.extend(sky.sun());

@@ -29,9 +29,9 @@ impl Converter<'_> {
         let object = if colour.is_none() { self.document.named(object, name)? } else { None };
         match object.map(|object| Ok((self.texture(&object, 0)?, object))).transpose()? {
             Some((Reflectance::Constant(colour), _)) => Ok(Some(colour)),
-            Some((Reflectance::Textured { .. }, object)) => Err(object
-                .place
-                .wrong(format!("an image stands for \"{name}\""), "give an <rgb> or a <spectrum>")),
+            Some((Reflectance::Textured { .. }, object)) => {
+                Err(object.place.wrong(format!("\"{name}\" is an image"), "give an <rgb> or a <spectrum>"))
+            }
             None => Ok(colour),
         }
     }
@@ -52,13 +52,13 @@ impl Converter<'_> {
                     self.sources.push((path.clone(), hash));
                 }
                 let samples = value::samples_of_file(&text).map_err(|line| {
-                    let remedy = "write a wavelength in nm and a value a line, wavelengths ascending";
-                    Location::line(&path, line).wrong("this is no sampled spectrum", remedy)
+                    let remedy = "write one wavelength in nm and one value per line, wavelengths ascending";
+                    Location::line(&path, line).wrong("this is not a sampled spectrum", remedy)
                 })?;
                 self.sampled(&samples, emissive, &property.place)
             }
             _ => {
-                let what = format!("\"{name}\" of {} \"{}\" is no colour", object.tag, object.plugin);
+                let what = format!("\"{name}\" of {} \"{}\" is not a colour", object.tag, object.plugin);
                 return Err(property.place.wrong(what, "give an <rgb> or a <texture>"));
             }
         };
@@ -107,11 +107,11 @@ impl Converter<'_> {
     /// Converts a texture object to a reflectance.
     pub(super) fn texture(&mut self, object: &Object, depth: u32) -> Result<Reflectance, SceneError> {
         if object.tag != "texture" {
-            let what = format!("a <{}> stands where a texture is expected", object.tag);
+            let what = format!("expected a texture, found a <{}>", object.tag);
             return Err(object.place.wrong(what, "give a <texture>"));
         }
         if depth > 8 {
-            return Err(object.place.wrong("textures refer to each other", "break the circle"));
+            return Err(object.place.wrong("textures refer to each other", "break the cycle"));
         }
         let reflectance = match object.plugin.as_str() {
             "bitmap" => self.bitmap(object)?,
@@ -144,8 +144,8 @@ impl Converter<'_> {
             }
             "scale" => self.scaled(object, depth)?,
             other => {
-                let what = format!("the texture \"{other}\" is not modelled");
-                self.log.warn(&object.place, what, "reflectance 0.5 stands in")?;
+                let what = format!("the texture \"{other}\" is not supported");
+                self.log.warn(&object.place, what, "reflectance 0.5 is used instead")?;
                 return Ok(Reflectance::Constant(Rgb::splat(0.5)));
             }
         };
@@ -187,7 +187,7 @@ impl Converter<'_> {
             None | Some("bilinear" | "trilinear" | "ewa") => Filter::Bilinear,
             Some("nearest") => Filter::Nearest,
             Some(other) => {
-                let what = format!("the texture filter \"{other}\" is not modelled");
+                let what = format!("the texture filter \"{other}\" is not supported");
                 self.log.note(&object.place, what, "texels are joined bilinearly");
                 Filter::Bilinear
             }
@@ -197,7 +197,7 @@ impl Converter<'_> {
             Some("mirror") => Wrap::Mirror,
             Some("clamp") => Wrap::Clamp,
             Some(other) => {
-                let what = format!("the texture wrap mode \"{other}\" is not modelled");
+                let what = format!("the texture wrap mode \"{other}\" is not supported");
                 self.log.warn(&object.place, what, "the image is repeated")?;
                 Wrap::Repeat
             }
@@ -209,8 +209,8 @@ impl Converter<'_> {
             if gamma != 1.0 && gamma > 0.0 {
                 self.log.warn(
                     &object.place,
-                    format!("a gamma of {gamma} is not modelled"),
-                    "sRGB is taken",
+                    format!("a gamma of {gamma} is not supported"),
+                    "sRGB is used",
                 )?;
             }
         }

@@ -29,7 +29,7 @@ impl Converter<'_> {
         }
         principled.anisotropic = self.share(bsdf, "anisotropic", 0.0)?;
         if self.share(bsdf, "flatness", 0.0)? != Share::Constant(0.0) {
-            self.log.warn(&bsdf.place, "flatness is not modelled", "it is left out")?;
+            self.log.warn(&bsdf.place, "flatness is not supported", "it is left out")?;
         }
         let principled = Some(Box::new(principled));
         Ok(Material { name, two_sided: true, principled, ..Material::default() })

@@ -354,7 +354,7 @@ impl XmlReader<'_> {
             self.substituted.set(self.substituted.get() + value.value.len());
             if self.substituted.get() > MAX_SUBSTITUTED {
                 let what = format!("the parameters become more than {} MiB of text", MAX_SUBSTITUTED >> 20);
-                return Err(place.wrong(what, "do not make values of values"));
+                return Err(place.wrong(what, "do not build values from values"));
             }
             out.push_str(&value.value);
             rest = &from[1 + name.len()..];

@@ -62,7 +62,7 @@ pub(super) fn parse(
         "spectrum" => spectrum(text()?, place)?,
         "blackbody" => blackbody(attributes, place)?,
         "translate" | "rotate" | "scale" | "lookat" | "lookAt" | "matrix" => {
-            let what = format!("<{tag}> stands outside a <transform>");
+            let what = format!("<{tag}> is outside a <transform>");
             return Err(place.wrong(what, "put it inside <transform name=\"to_world\">"));
         }
         _ => {

@@ -39,7 +39,7 @@ impl SceneBuilder<'_> {
             (None, None, Some(first)) => shot(*first, false, path),
             (None, None, None) => {
                 if text.film_width.is_some() || text.aperture_radius.is_some() {
-                    let what = "a camera with a film_width or an aperture_radius stands nowhere";
+                    let what = "a camera with a film_width or an aperture_radius has no position";
                     return Err(place.wrong(what, "give its origin and target"));
                 }
                 let up = text.up.map_or(DVec3::Y, DVec3::from);
@@ -116,8 +116,8 @@ impl SceneBuilder<'_> {
             match frames.last() {
                 _ if frame == 0 => return Err(place.wrong("a key is at frame 0", "frames count from 1")),
                 Some(last) if frame <= *last => {
-                    let what = format!("a key at frame {frame} stands after that at frame {last}");
-                    return Err(place.wrong(what, "write keys in the order of their frames, one a frame"));
+                    let what = format!("a key at frame {frame} follows a key at frame {last}");
+                    return Err(place.wrong(what, "write keys in the order of their frames, one per frame"));
                 }
                 _ => frames.push(frame),
             }

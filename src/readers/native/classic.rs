@@ -35,7 +35,7 @@ pub(super) const SLACK: f32 = 1e-3;
 /// Maximum number of materials that a message lists.
 const MAX_LISTED: usize = 3;
 
-/// Feature that is not modelled, with the names of the materials that ask for it.
+/// Feature that is not supported, with the names of the materials that ask for it.
 struct UnmodelledFeature {
     place: Location,
     what: String,
@@ -77,7 +77,7 @@ impl<'b, 'a> LibraryReader<'b, 'a> {
         Ok((source.name, Appearance { material, emission }))
     }
 
-    /// Warns of the features that are not modelled, each once.
+    /// Warns of the features that are not supported, each once.
     pub fn report(self) -> Result<(), SceneError> {
         for UnmodelledFeature { place, what, fallback, names } in self.findings {
             let mut listed: Vec<String> =
@@ -85,7 +85,7 @@ impl<'b, 'a> LibraryReader<'b, 'a> {
             if names.len() > MAX_LISTED {
                 listed.push(format!("{} more", names.len() - MAX_LISTED));
             }
-            let what = format!("{what} is not modelled: {}", listed.join(", "));
+            let what = format!("{what} is not supported: {}", listed.join(", "));
             self.builder.log.warn(&place, what, fallback)?;
         }
         Ok(())

@@ -24,7 +24,7 @@ struct OpenMap {
 }
 
 impl LibraryReader<'_, '_> {
-    /// Adds a feature that is not modelled, at the line of the map `keyword` or of the material.
+    /// Adds a feature that is not supported, at the line of the map `keyword` or of the material.
     pub fn lacks(&self, source: &mut ClassicMaterial, keyword: &str, what: String, fallback: &str) {
         let line = source.maps.get(keyword).map(|map| map.line).or(source.place.line);
         source.lacks(what, fallback, line.unwrap_or_default());
@@ -93,8 +93,8 @@ impl LibraryReader<'_, '_> {
                 // Maya writes its opacity so.
                 scale *= luminance(filter).clamp(0.0, 1.0);
             } else if !is_principled(source) {
-                let what = format!("Tf of a surface that is no glass (illum {})", source.model);
-                self.lacks(source, "", what, "nothing passes but by d; write illum 7 and Ni for glass");
+                let what = format!("Tf of a surface that is not glass (illum {})", source.model);
+                self.lacks(source, "", what, "light passes only by d; write illum 7 and Ni for glass");
             }
         }
         let Some(map) = self.open(source, "map_d")? else {
@@ -130,7 +130,7 @@ impl LibraryReader<'_, '_> {
         }))
     }
 
-    /// Returns the map of a keyword, and names its options that are not modelled.
+    /// Returns the map of a keyword, and names its options that are not supported.
     fn open(
         &mut self,
         source: &mut ClassicMaterial,

@@ -96,7 +96,7 @@ fn every_statement_and_option_is_read_or_named() {
         }
     }
     let said = warnings(&loaded("Kd 0.5\nKm 0.3\nrefl -type sphere tile.png\nillum 12"));
-    let named = ["unknown statement \"Km\"", "refl is not modelled: \"m\"", "illum 12"];
+    let named = ["unknown statement \"Km\"", "refl is not supported: \"m\"", "illum 12"];
     assert!(said.len() == 3 && named.iter().zip(&said).all(|(named, said)| said.contains(named)), "{said:?}");
 }
 
@@ -172,7 +172,7 @@ fn glass_passes_tf_and_names_what_glass_cannot_have() {
     for (text, named) in [
         ("illum 7\nKd 0.8", "Kd of glass"),
         ("illum 7\nNi 1.4\nTf 1 1 1\nd 0.1", "d of glass"),
-        ("illum 2\nKd 0.5\nTf 0.2 0.9 0.2", "Tf of a surface that is no glass"),
+        ("illum 2\nKd 0.5\nTf 0.2 0.9 0.2", "Tf of a surface that is not glass"),
         ("illum 1\nKd 0.5\nmap_Ks tile.png", "map_Ks"),
         ("Kd 0.5\nd 1.5", "d of 1.5"),
         ("Kd 0.5\nPc 4", "Pc of 4"),

@@ -19,7 +19,7 @@ impl ColourText {
     pub fn rgb(&self, what: &str, place: &Location) -> Result<Rgb, SceneError> {
         let colour = self.constant(place)?;
         let image =
-            || place.wrong(format!("{what} is no constant"), "give a number, [r, g, b] or \"#rrggbb\"");
+            || place.wrong(format!("{what} is not a constant"), "give a number, [r, g, b] or \"#rrggbb\"");
         let colour = colour.ok_or_else(image)?;
         let wrong = || place.wrong(format!("{what} is not finite"), "write finite numbers");
         colour.is_finite().then_some(colour).ok_or_else(wrong)

@@ -64,10 +64,10 @@ impl SceneBuilder<'_> {
     /// Returns the material `name`, a part of the material at `place`.
     fn named(&mut self, name: &Option<String>, depth: u32, place: &Location) -> Result<Material, SceneError> {
         if depth > MAX_DEPTH {
-            return Err(place.wrong("materials are made of each other", "break the circle"));
+            return Err(place.wrong("materials are made of each other", "break the cycle"));
         }
         let Some(name) = name else {
-            let what = "a material lacks those that it is made of";
+            let what = "a material lacks the materials that it combines";
             return Err(place.wrong(what, "name them: first and second of a blend, base of a coated one"));
         };
         let texts = self.material_texts;
@@ -157,7 +157,7 @@ impl SceneBuilder<'_> {
         match text.alpha {
             None | Some(NumberText::Number(Number(0.0))) if text.alpha_v.is_some() => {
                 let what = format!("the roughness of \"{}\" is given along v alone", text.name);
-                Err(place.wrong(what, "give alpha, that along u, above 0"))
+                Err(place.wrong(what, "give alpha, the roughness along u, above 0"))
             }
             None | Some(NumberText::Number(Number(0.0))) => Ok(Lobe::Mirror { fresnel, scale }),
             Some(_) => self.rough(text, fresnel, scale, place),
@@ -355,7 +355,7 @@ fn attenuation(text: &MaterialText, place: &Location) -> Result<Option<Rgb>, Sce
     let distance = text.attenuation_distance.map_or(1.0, f64::from);
     let is_share = colour.min_element() >= 0.0 && colour.max_element() <= 1.0;
     if !(is_share && distance > 0.0) {
-        let what = format!("the glass \"{}\" turns light into {colour} over {distance}", text.name);
+        let what = format!("the glass \"{}\" has the attenuation colour {colour} over {distance}", text.name);
         return Err(place.wrong(what, "give a colour from 0 to 1 and a distance above 0"));
     }
     let absorption = absorption(colour, distance);

@@ -23,7 +23,7 @@ impl SceneBuilder<'_> {
             return self.import(&path, text, &place);
         }
         if text.lumens_per_watt.is_some() || text.fps.is_some() || text.time.is_some() {
-            let what = "lumens_per_watt, fps and time mean nothing for a mesh that is no glTF model";
+            let what = "lumens_per_watt, fps and time are only for glTF models";
             return Err(place.wrong(what, "leave them out"));
         }
         let (name, geometry) = self.geometry(text, &place)?;
@@ -203,7 +203,7 @@ fn matrix(step: &StepText, place: &Location) -> Result<DMat4, SceneError> {
         _ => {
             let remedy =
                 "write { scale = 2.0 }, { rotate = { ... } }, { translate = [...] } or { matrix = [...] }";
-            return Err(place.wrong("a transform step does not say one thing", remedy));
+            return Err(place.wrong("a transform step needs exactly one operation", remedy));
         }
     })
 }

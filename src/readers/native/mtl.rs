@@ -35,7 +35,7 @@ impl SceneBuilder<'_> {
                     }
                     Ok(_) => {}
                     Err(name) => {
-                        let fallback = "a grey of 0.5 stands in for its materials; check the name";
+                        let fallback = "a grey of 0.5 is used for its materials; check the name";
                         self.log.warn(&from, format!("there is no material library \"{name}\""), fallback)?;
                     }
                 }

@@ -54,7 +54,7 @@ impl SceneBuilder<'_> {
 fn moment(date: &Datetime, place: &Location) -> Result<Moment, SceneError> {
     let (Some(day), Some(time), Some(offset)) = (date.date, date.time, date.offset) else {
         let remedy = "write day, time and time zone, as 2024-06-21T12:30:00+02:00";
-        return Err(place.wrong(format!("the date {date} is no moment"), remedy));
+        return Err(place.wrong(format!("the date {date} is invalid"), remedy));
     };
     let timezone = match offset {
         Offset::Z => 0.0,

@@ -295,7 +295,10 @@ fn an_obj_brings_its_mtl_materials() {
     assert_eq!(emission, [None, None, None, None, Some(Vec3::new(9.0, 8.0, 7.0))]);
     assert_eq!((material(3).opacity, material(4).opacity), (None, Some(Share::Constant(0.25))));
     let [lost] = &loaded.warnings[..] else { panic!("{:?}", loaded.warnings) };
-    assert!(lost.to_string().contains("not in its libraries: \"lost\"; a grey of 0.5 stands in"), "{lost}");
+    assert!(
+        lost.to_string().contains("not in its libraries: \"lost\"; a grey of 0.5 is used instead"),
+        "{lost}"
+    );
     assert_eq!(scene.sources.len(), 3);
 
     let lamp = format!(

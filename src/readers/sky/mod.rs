@@ -104,7 +104,7 @@ impl SkyPlan {
             return Err(place.wrong(format!("the sun is {} degrees wide", self.sun_angle), "give 0 to 90"));
         }
         if [self.sky_scale, self.sun_scale].iter().any(|scale| !(*scale >= 0.0 && scale.is_finite())) {
-            return Err(place.wrong("the scale of sun or sky is negative or no number", "give 0 or more"));
+            return Err(place.wrong("the scale of sun or sky is negative or not a number", "give 0 or more"));
         }
         if self.elevation() < 0.0 {
             let fallback = "there is no light from it; choose another hour or direction";

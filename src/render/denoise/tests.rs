@@ -67,7 +67,7 @@ fn black_stays_black_and_guides_of_another_size_are_refused() {
     let (color, albedo) = (noisy(6, 4, 1.0), noisy(4, 6, 1.0));
     let guides = Guides { albedo: Some(&albedo), ..Guides::default() };
     let refused = denoiser.denoise(&color, &guides, Quality::High).unwrap_err().to_string();
-    assert_eq!(refused, "the albedo has 4x6 pixels, and the picture 6x4");
+    assert_eq!(refused, "the albedo has 4x6 pixels, and the image 6x4");
 }
 
 #[test]

@@ -45,8 +45,8 @@ macro_rules! method_settings {
                 ];
                 /// Random seed.
                 seed: u32 = 0 => [.heading("")];
-                /// Maximum path length in edges from the eye (1: visible emitters, 2: direct light) [default: from the
-                /// scene].
+                /// Maximum path length in edges from the eye. 1 shows visible emitters, 2 adds direct light [default:
+                /// from the scene].
                 max_depth: Option<u32> = None => [.heading("").at_least(1.0)];
                 $($own)*
             }

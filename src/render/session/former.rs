@@ -9,13 +9,13 @@ use transport::reprojection::PreviousImage;
 pub(crate) enum Former<'a> {
     /// No results.
     Nothing,
-    /// The previous frames of a walk-through.
+    /// The previous frames of a walk.
     Frames(WalkState<'a>),
     /// An interrupted image of the same goal.
     Samples(PartialImage),
 }
 
-/// State of a walk-through, which a frame reads and updates.
+/// State of a walk, which a frame reads and updates.
 pub struct WalkState<'a> {
     /// Records of indirect light.
     pub records: &'a mut RetainedRecords,

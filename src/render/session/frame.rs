@@ -10,8 +10,8 @@ use serde_json::Value;
 use world::view::View;
 
 /// Warning of light that paths miss, with its remedy.
-pub(super) const FOCUSED: &str = "paths seldom find sunlight that comes through solid glass, and never light of points \
-    and directions; use --method cache or another with virtual lights";
+pub(super) const FOCUSED: &str = "path tracing seldom finds sunlight through solid glass, and never finds point and directional \
+    lights through it; use --method cache or another method with virtual lights";
 
 /// Warning of a black image, with its remedies.
 pub const BLACK: &str = "the image is black: no light reaches the surfaces in view; check the position and direction of \
@@ -55,7 +55,7 @@ impl RenderedFrame {
 
 /// Returns the film of a finished image, and the number of channels that were not finite and became 0.
 ///
-/// The variance is that of the noisy image if the image is denoised.
+/// If the image is denoised, the variance belongs to the noisy image.
 pub(super) fn film(output: Output, view: &View, scene: &Scene) -> (Film, u64) {
     let (layer, of) =
         if matches!(output.denoised, Some(Ok(_))) { (NOISY_VARIANCE, "noisy_") } else { ("variance", "") };

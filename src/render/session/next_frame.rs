@@ -1,4 +1,4 @@
-//! The next frame of a walk-through.
+//! The next frame of a walk.
 
 use super::context::FrameContext;
 use super::former::{VisibleDifferences, WalkState};
@@ -7,7 +7,7 @@ use base::stats::{Stage, Stopwatch};
 use transport::eye::Settled;
 use transport::reprojection::Reprojected;
 
-/// Renders and finishes the next frame of a walk-through, and updates its state.
+/// Renders and finishes the next frame of a walk, and updates its state.
 ///
 /// Methods without records render it as a frame of its own.
 pub fn next_frame(context: &FrameContext, method: &Method, state: WalkState) -> Output {

@@ -1,4 +1,4 @@
-//! The image for a goal: by the method as it is set, by the better of two, or by settings planned for a time or an
+//! The image for a goal: by the given method, by the better of two methods, or by settings planned for a time or an
 //! error.
 
 use super::context::FrameContext;

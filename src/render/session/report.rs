@@ -31,8 +31,8 @@ pub(super) fn of_error(asked: f64, options: &str, missed: Option<Estimate>) -> V
     if let Some(rms) = missed {
         let [value, low, high] = [rms.value, rms.low, rms.high].map(|x| 100.0 * x);
         remarks.push(Remark::Warning(format!(
-            "the error may be above {asked} %: {value:.2} % ({low:.2} to {high:.2}); more --verify or --verify-samples \
-             narrow the interval"
+            "the error may be above {asked} %: {value:.2} % ({low:.2} to {high:.2}); more pixels (--verify) or \
+             paths (--verify-samples) narrow the interval"
         )));
     }
     remarks
@@ -40,7 +40,7 @@ pub(super) fn of_error(asked: f64, options: &str, missed: Option<Estimate>) -> V
 
 /// Returns a remark about the cache, whose error of `missed` did not meet the goal.
 pub(super) fn of_missed(missed: f64) -> Remark {
-    Remark::Note(format!("cache reached an error of {:.2} %, so paths were tried", 100.0 * missed))
+    Remark::Note(format!("the cache reached an error of {:.2} %, so path tracing was tried", 100.0 * missed))
 }
 
 /// Maximum width of an informative interval, over the RMS error or 1 %.
@@ -55,10 +55,10 @@ pub(super) fn of_measured(found: &Verified) -> Vec<Remark> {
         format!("{value:.2} % ({low:.2} to {high:.2})")
     };
     let Verified { relative_rms, relative_bias, relative_error_95, pixels, .. } = *found;
-    let hidden = if found.error_95_resolved { "" } else { ", which the noise of the paths hides" };
+    let hidden = if found.error_95_resolved { "" } else { " (hidden by the noise of the paths)" };
     let mut remarks = vec![Remark::Note(format!(
-        "error by paths at {pixels} pixels: RMS {}, bias {}, of 95 % of the pixels at most {}{hidden}; each interval \
-         holds in 95 of 100 cases",
+        "error, measured by path tracing {pixels} pixels: RMS {}, bias {}, 95th percentile {}{hidden}; brackets are \
+         95 % confidence intervals",
         text(relative_rms),
         text(relative_bias),
         text(relative_error_95)
@@ -70,10 +70,14 @@ pub(super) fn of_measured(found: &Verified) -> Vec<Remark> {
     };
     if is_wide(relative_rms) || is_wide(relative_bias) {
         let capped = 2 * found.pixels_at_cap > pixels;
-        let more = if capped { "more --verify and --verify-samples" } else { "more --verify" };
+        let more = if capped {
+            "more pixels (--verify) and paths (--verify-samples)"
+        } else {
+            "more pixels (--verify)"
+        };
         remarks.push(Remark::Warning(format!(
             "{pixels} pixels are too few to measure the error: an interval is more than twice as wide as the error; {more} \
-             narrow it"
+             narrow the interval"
         )));
     }
     remarks
@@ -101,15 +105,15 @@ pub(super) fn add_choice(
     let why = match reason {
         Reason::Work => format!("{other} would need about {ahead:.1}x the work for the same quality"),
         Reason::NoTime => format!(
-            "there is no time for either method, and the cheapest image by {other} would need about {ahead:.1}x the work"
+            "neither method meets the time, and the cheapest image by {other} would need about {ahead:.1}x the work"
         ),
-        Reason::Missed => format!("{other} did not reach the error"),
+        Reason::Missed => format!("{other} did not reach the required error"),
     };
     remarks.push(Remark::Note(format!("Method: {name} ({why})")));
     if is_measured && seldom > MAX_SELDOM {
         remarks.push(Remark::Warning(format!(
-            "paths, with which the error is measured, seldom find {:.0} % of the light (from small emitters through glass \
-             and over mirrors): the error does not cover that light",
+            "path tracing, which measures the error, seldom finds {:.0} % of the light (small emitters seen through glass \
+             or mirrors): the error does not include this light",
             100.0 * seldom
         )));
     }

@@ -33,7 +33,7 @@ impl FileNames {
         let mut places = places(name);
         let Some((start, end, digits)) = places.next() else { return Ok(None) };
         if places.next().is_some() {
-            return Err("the file's name has more than one place for the frame's number".to_owned());
+            return Err("the file name has more than one placeholder for the frame number".to_owned());
         }
         if digits > MAX_DIGITS {
             return Err(format!("{digits} digits are more than {MAX_DIGITS}"));
@@ -49,11 +49,11 @@ impl FromStr for FileNames {
     fn from_str(text: &str) -> Result<FileNames, String> {
         let Some(names) = FileNames::parse(Path::new(text))? else {
             return Err(
-                "the file's name has no place for the frame's number; write one like f.####.exr or f.%04d.exr".to_owned()
+                "the file name has no placeholder for the frame number; write a name like f.####.exr or f.%04d.exr".to_owned()
             );
         };
         if !names.after.to_ascii_lowercase().ends_with(".exr") {
-            return Err("the file's name must end in .exr".to_owned());
+            return Err("the file name must end in .exr".to_owned());
         }
         Ok(names)
     }
@@ -68,7 +68,7 @@ pub fn numbered(path: &Path, frame: Option<usize>) -> Result<PathBuf, String> {
         (None, _) => Ok(path.to_owned()),
         (Some(names), Some(frame)) => Ok(names.of(frame)),
         (Some(_), None) => {
-            Err("the file's name has a place for the frame's number; add --frame N, or name the file without # and %d"
+            Err("the file name has a placeholder for the frame number; add --frame N, or name the file without # and %d"
                 .to_owned())
         }
     }

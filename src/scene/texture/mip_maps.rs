@@ -58,8 +58,9 @@ impl MipMaps {
         !self.pyramids.is_empty()
     }
 
-    /// Returns the colour of a texture at `uv`, averaged over a square of side `covered` in texture coordinates if the
-    /// texture has coarser versions; white if there is no such texture. `attribute` returns the value of an attribute.
+    /// Returns the colour of a texture at `uv`; white if there is no such texture. If the texture has coarser
+    /// versions, the colour is the mean over a square of side `covered` in texture coordinates. `attribute` returns the
+    /// value of an attribute.
     #[inline]
     pub fn lookup(
         &self,

@@ -1,9 +1,9 @@
 //! Textures: the layout of texels in memory, interpolation between them, their mip maps, and the part of a texture that
 //! a ray stands for.
 //!
-//! The room is a folder of this crate and not a crate of its own: the scene holds the textures, everything else here
-//! needs only `base`, and all crates that look textures up see the scene already. [`Textures`] is shared, so materials
-//! and emitters hold what they look up and copy no texels.
+//! The module is not a crate of its own. The scene has the textures, and everything else here needs only `base`. All
+//! crates that look textures up use the scene already. [`Textures`] is shared, so materials and emitters hold what they
+//! look up and copy no texels.
 
 mod attribute;
 mod coverage;

@@ -10,7 +10,7 @@ use std::sync::Arc;
 
 /// Textures of a scene by [`TextureId`]: images, and attributes of meshes. A clone shares the texels.
 ///
-/// As a slice it is that of the images.
+/// As a slice, the type is the slice of the images.
 #[derive(Clone, Debug)]
 pub struct Textures {
     images: Arc<[Texture]>,

@@ -121,7 +121,7 @@ impl FromIterator<Feature> for Features {
 
 /// Error: a name is not that of a feature.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("there is no feature `{name}`; there are {}", Feature::ALL.map(Feature::name).join(", "))]
+#[error("there is no layer `{name}`; layers are {}", Feature::ALL.map(Feature::name).join(", "))]
 pub struct UnknownFeature {
     name: String,
 }

@@ -23,13 +23,13 @@ settings! {
     /// Accuracy of series. Errors are in the L2 norm over the incoming directions, relative to the whole kernel (base
     /// and lobes), averaged over outgoing inclinations up to 75°.
     pub struct SeriesSettings {
-        /// Minimum roughness α of lobes that records light; 2 for none. Cuts light sharper lobes.
+        /// Minimum roughness α of lobes that records light. Cuts light sharper lobes. 2 leaves all lobes to cuts.
         min_alpha: f32 = 0.25 => [
             .heading(PAPER).named("series_alpha").positive().values(&["0.15", "0.2", "0.25", "0.35", "0.5", "2"])
         ];
-        /// Error of a lobe's series below which it gets no further bands, relative to the whole reflection.
+        /// Error of the series of a lobe below which no further bands are added, relative to the whole reflection.
         error: f64 = 0.05 => [.heading(PAPER).named("series_band_error").positive().scaled(&DOWN)];
-        /// Maximum error of a lobe's series for which records light it, relative to the whole reflection.
+        /// Maximum error of the series of a lobe that records light, relative to the whole reflection.
         max_error: f64 = 0.12 => [.heading(PAPER).named("series_error").at_least(0.0).scaled(&DOWN)];
         /// Maximum error of the interpolation between outgoing directions.
         interpolation_error: f64 = 0.002;

@@ -7,14 +7,14 @@ use base::stats::add_fields;
 settings! {
     /// Settings of a cut.
     pub struct CutSettings in "Lightcuts" {
-        /// Maximum expected error of a cluster, relative to the sample's luminance.
+        /// Maximum expected error of a cluster, relative to the luminance of the sample.
         ///
         /// See [`super::expected`].
         epsilon: f32 = 0.02 => [.fraction().scaled(&DOWN)];
         /// Maximum number of clusters in a cut.
         max_cut: usize = 5000 => [.at_least(1.0).scaled(&UP)];
-        /// Maximum contribution of one indirect virtual point light, relative to the sample's luminance; 0 does not
-        /// clamp.
+        /// Maximum contribution of one indirect virtual point light, relative to the luminance of the sample. 0
+        /// disables clamping.
         ///
         /// `None` leaves weak singularities unclamped. Shares below 0.001 are refused, since compensation restores the
         /// light of single VPLs only, and clusters of that brightness are not refined.

@@ -8,14 +8,14 @@ const FACTORS: [f64; 4] = [1.0 / 16.0, 0.25, 1.0, 4.0];
 settings! {
     /// Numbers of VPLs to create.
     pub struct LightPassSettings in "Lightcuts" {
-        /// Approximate number of virtual point lights on area lights and directions of the environment.
+        /// Approximate number of virtual point lights for direct light, on area lights and in the environment.
         ///
         /// Area lights share the number by power. Each has at least 256; fewer if there are more than 1024 lights.
         direct: u32 = 4096 => [
             .named("direct_vpls").at_least(1.0).scaled(&FACTORS).judged_by(JudgedBy::Light).with(&[("direct", "cuts")])
         ];
-        /// Approximate number of virtual point lights where light is reflected, at least those of 1024 paths. 0
-        /// computes direct light only.
+        /// Approximate number of virtual point lights for indirect light, from at least 1024 light paths. 0 computes
+        /// only direct light.
         ///
         /// Photons are aimed at openings through which light of sky and sun enters. As few as a quarter are made then.
         indirect: u32 = 300_000 => [.named("vpls").at_least(0.0).scaled(&FACTORS).judged_by(JudgedBy::Light)];

@@ -23,9 +23,9 @@ choices! {
 choices! {
     /// Source of indirect light.
     pub enum FoundBy {
-        /// Records splatted onto the eye samples, as in the paper.
+        /// Records splatted onto nearby eye samples, as in the paper.
         Records = "records",
-        /// Cuts shared by neighbouring eye samples and reconstructed between them.
+        /// Lightcuts of some eye samples, reconstructed at their neighbours.
         Cuts = "cuts",
     }
 }
@@ -36,9 +36,9 @@ choices! {
         /// Monte Carlo samples of emitters and BSDFs at every eye sample. The eye samples of a pixel are merged for
         /// indirect light.
         Sampled = "drawn",
-        /// Records.
+        /// Records of direct light.
         Records = "records",
-        /// Cuts.
+        /// Lightcuts.
         Cuts = "cuts",
     }
 }
@@ -62,41 +62,41 @@ settings! {
         extra_samples: f32 = 1.0 => [.fraction().values(&["0", "0.2", "0.5", "1"]).with(&[("direct", "drawn")])];
         /// Source of indirect light.
         indirect: FoundBy = FoundBy::Records => [.values(&["records", "cuts"])];
-        /// Maximum error bound of a cluster in a record's cut, relative to its luminance.
+        /// Maximum error bound of a cluster in the cut of a record, relative to the luminance of the record.
         cut: CutSettings = CutSettings { epsilon: 0.005, clamp: CLAMP, max_cut: MAX_CUT, ..CutSettings::default() } => [
             at epsilon .named("record_epsilon").fraction().scaled(&DOWN)
         ];
-        /// Shape of footprints.
+        /// Shape of the footprints of records.
         footprints: Footprints = Footprints::Occlusion => [
             .heading(PAPER).values(&["isotropic", "anisotropic", "occlusion"])
         ];
-        /// Number of probe rays per record that find the edges of occluders, in whole rings of sixteen.
+        /// Number of probe rays per record, in whole rings of sixteen. Probe rays find the edges of occluders.
         probe_rays: u32 = 128 => [.heading(PAPER).range(1.0, 4096.0).scaled(&UP)];
-        /// Radius of footprints, for direct and indirect light (the paper's a). It is relative to the distance of the
-        /// geometry that sends or blocks light.
+        /// Radius of footprints for direct and indirect light (the paper's a). The radius is relative to the distance
+        /// of the geometry that sends or blocks light.
         accuracy: [f32; 2] = [0.3, 0.2] => [
             .positive().placeholder("DIRECT,INDIRECT").scaled(&DOWN).parts(&["direct", "indirect"]).with(RECORDS)
         ];
-        /// Minimum and maximum radius of footprints, in spacings of eye samples, for both layers or for direct and
-        /// indirect light.
+        /// Minimum and maximum radius of footprints, in spacings of eye samples. Two numbers set both kinds of light,
+        /// four set direct, then indirect light.
         reach: [[f32; 2]; 2] = [[1.5, 20.0], [1.5, 40.0]] => [
             .positive().placeholder("LEAST,LARGEST").scaled(&DOWN).parts(&["", "", "least", "largest"])
         ];
         /// Choice of the glossy surfaces lit by records, and accuracy of their series.
         series: SeriesSettings = SeriesSettings::default() => [group];
-        /// Extrapolation of records with their gradients, for comparison. Gradients always shape the footprints.
+        /// Extrapolate records with their gradients. Gradients shape the footprints in either case.
         gradients: bool = true => [.heading(PAPER)];
         /// Relative change of luminance across an anisotropic footprint that halves it along the gradient (the paper's
         /// μ).
         mu: f32 = 0.5 => [.heading(PAPER).positive().scaled(&DOWN).with(&[("footprints", "anisotropic")])];
-        /// Maximum angle between the normals of a record and a lit point, as √(1 - cos).
+        /// Maximum angle between the normal of a record and the normal of a lit point, as √(1 - cos).
         normal_tolerance: f32 = 0.4 => [.heading(PAPER).positive().scaled(&[2.0, 1.0, 0.5])];
         /// Maximum number of passes that shrink footprints at visible seams.
         passes: u32 = 1 => [.heading(PAPER).values(&["0", "1", "2", "5"])];
         /// Minimum relative difference of luminance that counts as visible.
         threshold: f32 = 0.02 => [.heading(PAPER).fraction().scaled(&DOWN)];
-        /// Minimum number of eye samples in a kd-tree cell that gets a record. Smaller cells are lit by cuts, or by
-        /// final gathering.
+        /// Minimum number of eye samples in a cell of the kd-tree that gets a record. Smaller cells use cuts or final
+        /// gathering.
         least_cell: u32 = 256 => [.at_least(1.0).scaled(&UP)];
         /// Approximate number of patches of the eye samples without records. Sixteen samples of each share a cut,
         /// which is reconstructed at the others. The cost of cuts is proportional to it at any resolution.

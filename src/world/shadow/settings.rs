@@ -9,7 +9,8 @@ settings! {
     /// Single rays use the cache, packets do not. Embree's answers in coherent packets depend, for very few rays, on
     /// the other rays of the packet. If cached rays were left out, images could change.
     pub struct ShadowSettings in "Lightcuts" {
-        /// Occluder cache that single shadow rays test first, for speed; `auto`: if samples do not share cuts.
+        /// Test recent occluders before the scene with single shadow rays, for speed. `auto` does so if samples do not
+        /// share cuts.
         cached: Option<bool> = None => [.named("occluder_cache")];
         /// Size of the cache.
         cache: OccluderCacheSettings = OccluderCacheSettings::default() => [group];

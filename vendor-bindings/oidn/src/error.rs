@@ -6,7 +6,7 @@
 pub enum Error {
     /// The folder that the user chose holds no library that fits.
     #[error(
-        "OIDN_DIR={directory} gives no Open Image Denoise 2 ({tried}): correct it, or unset it and run `make setup`"
+        "OIDN_DIR={directory} holds no Open Image Denoise 2 ({tried}): correct it, or unset it and run `make setup`"
     )]
     NotInChosenFolder {
         /// Value of the variable.
@@ -34,7 +34,7 @@ pub enum Error {
         message: String,
     },
     /// An image has not the picture's size.
-    #[error("the {image} has {}x{} pixels, and the picture {}x{}", size[0], size[1], picture[0], picture[1])]
+    #[error("the {image} has {}x{} pixels, and the image {}x{}", size[0], size[1], picture[0], picture[1])]
     Size {
         /// Name of the image.
         image: &'static str,

@@ -30,7 +30,7 @@ pub(super) fn check_camera(
         || !lens.into_iter().all(is_length)
         || camera.near > MAX_COORDINATE as f32
     {
-        let what = "a camera's film, lens, focus or near plane is no size";
+        let what = "the size of a camera's image, lens, focus or near plane is invalid";
         return Err(place.wrong(what, "give numbers above 0, up to 1e18 times the scene's size"));
     }
     let (PixelFilter::Tent { radius: width } | PixelFilter::Gaussian { deviation: width }) = camera.filter

@@ -41,7 +41,7 @@ pub(super) fn check_lights(
 fn check_light(light: Rgb, what: &str, place: &Location) -> Result<(), SceneError> {
     match light.is_finite() && light.min_element() >= 0.0 {
         true => Ok(()),
-        false => Err(place.wrong(format!("{what} {light} is negative or no number"), "give 0 or more")),
+        false => Err(place.wrong(format!("{what} {light} is negative or not a number"), "give 0 or more")),
     }
 }
 
@@ -96,7 +96,7 @@ fn check_delta_lights(draft: &Draft, coordinates: &LocalCoordinates) -> Result<(
         }
         let falls_off = !matches!(light, DeltaLight::Directional { .. });
         if falls_off && !coordinates.local_intensity(power(light)).is_finite() {
-            let what = format!("a light's intensity {} is beyond all numbers for its scene", power(light));
+            let what = format!("a light's intensity {} overflows in its scene", power(light));
             return Err(place.wrong(what, "scale the scene up, or the light down"));
         }
     }

@@ -50,7 +50,7 @@ pub(super) fn check_material(
     }
     if let Some(absorption) = material.absorption {
         if !(absorption.is_finite() && absorption.min_element() >= 0.0) {
-            let what = format!("its inside absorbs {absorption} of the light by length");
+            let what = format!("its absorption {absorption} per unit of length is invalid");
             return Err(checks.wrong(what, "give an attenuation colour from 0 to 1 and a distance above 0"));
         }
         material.absorption = Some(absorption).filter(|absorption| *absorption != Rgb::ZERO);
@@ -74,7 +74,7 @@ impl MaterialChecks<'_> {
         if let Share::Constant(anisotropic) = principled.anisotropic
             && !(0.0..=1.0).contains(&anisotropic)
         {
-            let what = format!("its roughness is anisotropic by {anisotropic}");
+            let what = format!("its anisotropy is {anisotropic}");
             return Err(self.wrong(what, "give 0 to 1"));
         }
         if !principled.anisotropic_rotation.is_finite() {
@@ -183,7 +183,7 @@ impl MaterialChecks<'_> {
         match reflectance {
             Reflectance::Constant(albedo) => {
                 if !albedo.is_finite() || albedo.min_element() < 0.0 {
-                    let what = format!("the reflectance {albedo} is negative or no number");
+                    let what = format!("the reflectance {albedo} is negative or not a number");
                     return Err(self.wrong(what, "give 0 to 1"));
                 }
                 if albedo.max_element() > 1.0 + ALBEDO_SLACK {
@@ -195,7 +195,7 @@ impl MaterialChecks<'_> {
             }
             Reflectance::Textured { texture, scale } => {
                 if !scale.is_finite() || scale.min_element() < 0.0 {
-                    let what = format!("the texture's factor {scale} is negative or no number");
+                    let what = format!("the texture's factor {scale} is negative or not a number");
                     return Err(self.wrong(what, "give 0 to 1"));
                 }
                 if let Some(texture) = textures.get_mut(texture.0 as usize) {

@@ -59,7 +59,11 @@ pub(crate) fn sanitize(
         let what = format!(
             "{lost} triangles are too small for their distance from the camera or the scene's middle"
         );
-        log.warn(&draft.main_file(), what, "they are left out; move what lies far apart closer together")?;
+        log.warn(
+            &draft.main_file(),
+            what,
+            "they are left out; move distant parts of the scene closer together",
+        )?;
     }
     for mesh in draft.meshes.iter().filter(|mesh| mesh.triangles.is_empty() && mesh.emission.is_some()) {
         let what = format!("the emitter \"{}\" has no triangle with an area", mesh.name);
@@ -76,7 +80,7 @@ pub(crate) fn sanitize(
     }
     repair_attributes(draft, &mut report);
     if let Some(texture) = draft.scene.textures.iter().find(|texture| !texture.to_uv.is_finite()) {
-        let what = format!("the image \"{}\" is moved or scaled beyond all numbers", texture.name);
+        let what = format!("the texture transform of the image \"{}\" overflows", texture.name);
         log.part::<()>(Err(draft.main_file().wrong(what, "correct its transform")));
     }
     framing::frame(draft, coordinates.centre);

@@ -124,5 +124,5 @@ fn colours_of_other_numbers_of_vertices_or_of_other_types_are_errors() {
     assert!(message.contains("4 vertices and 3 colours"), "{message}");
     few = coloured(json!({}), |m| m.floats(&[[0.0f32, 1.0]; 4]));
     let message = load_bytes("m.glb", &few.glb()).unwrap_err().to_string();
-    assert!(message.contains("another type"), "{message}");
+    assert!(message.contains("the wrong type"), "{message}");
 }

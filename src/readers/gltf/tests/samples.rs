@@ -11,7 +11,7 @@ const CLEAR: [u8; 4] = [255, 255, 255, 0];
 pub fn all() -> Vec<(&'static str, Model, &'static [&'static str])> {
     vec![
         ("instances", instances(), &[]),
-        ("textures", textures(), &["extend differently"]),
+        ("textures", textures(), &["different wrap modes"]),
         ("emission", emission(), &[]),
         ("lights", lights(), &[]),
         ("camera", camera(), &["anything but the camera", "a second animation"]),

@@ -140,7 +140,7 @@ fn skins_and_targets_that_do_not_fit_are_errors() {
     says(error(arm(), &|m| m.json["scenes"][0]["nodes"] = json!([0, 2])), "node 1, is not in the scene");
     says(error(arm(), &|m| m.json["skins"][0]["joints"] = json!([0, 1, 0])), "3 joints and 2 matrices");
     says(error(arm(), &|m| m.json["nodes"][2]["skin"] = json!(3)), "skin 3");
-    says(error(arm(), &|m| first(m, "JOINTS_0", json!(0))), "another type");
+    says(error(arm(), &|m| first(m, "JOINTS_0", json!(0))), "the wrong type");
     says(error(arm(), &|m| first(m, "WEIGHTS_0", json!(99))), "accessor 99");
     says(error(arm(), &|m| first(m, "WEIGHTS_1", json!(5))), "joints without weights");
     let few = |m: &mut Model| m.json["accessors"][4]["count"] = json!(3);

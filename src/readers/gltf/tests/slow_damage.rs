@@ -125,10 +125,10 @@ fn error(change: impl Fn(&mut Model)) -> String {
 #[test]
 fn what_is_wrong_is_named_with_a_remedy() {
     let says = |message: String, part: &str| assert!(message.contains(part), "{message}");
-    says(error(|m| m.json["accessors"][0]["componentType"] = json!(5125)), "another type");
+    says(error(|m| m.json["accessors"][0]["componentType"] = json!(5125)), "the wrong type");
     says(error(|m| m.json["accessors"][0]["componentType"] = json!(7)), "unknown type");
-    says(error(|m| m.json["accessors"][0]["type"] = json!("VEC2")), "another type");
-    says(error(|m| m.json["accessors"][3]["componentType"] = json!(COMPONENT_F32)), "another type");
+    says(error(|m| m.json["accessors"][0]["type"] = json!("VEC2")), "the wrong type");
+    says(error(|m| m.json["accessors"][3]["componentType"] = json!(COMPONENT_F32)), "the wrong type");
     says(error(|m| m.json["accessors"][0]["count"] = json!(1_000_000_000_000u64)), "do not fit");
     says(error(|m| m.json["accessors"][0]["byteOffset"] = json!(u64::MAX)), "do not fit");
     says(error(|m| m.json["accessors"][1]["count"] = json!(3)), "4 vertices and 3 normals");
@@ -172,5 +172,5 @@ fn instances_beyond_memory_are_an_error() {
     model.json["scenes"][0]["nodes"] = (0..nodes.len()).collect();
     model.json["nodes"] = Value::Array(nodes);
     let message = load_bytes("m.glb", &model.glb()).map(|_| ()).unwrap_err().to_string();
-    assert!(message.contains("triangles that there is memory for"), "{message}");
+    assert!(message.contains("triangles that fit into memory"), "{message}");
 }

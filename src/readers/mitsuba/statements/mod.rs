@@ -38,7 +38,7 @@ pub(super) fn fate_of_plugin(tag: &str, plugin: &str) -> Fate {
     statements::fate(table(tag), plugin)
 }
 
-/// Returns the table of the objects with tag `tag`; an empty one if they are not modelled.
+/// Returns the table of the objects with tag `tag`; an empty one if they are not supported.
 fn table(tag: &str) -> &'static [Statement] {
     TABLES.iter().find(|(_, of, _)| *of == tag).map_or(&[], |(_, _, table)| table)
 }

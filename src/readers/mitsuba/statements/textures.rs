@@ -11,7 +11,7 @@ pub(in crate::mitsuba) const TEXTURES: &[Statement] = &[
     read("bitmap: wrap_mode", "repeat, mirror or clamp"),
     read("bitmap: raw", ""),
     read("bitmap: to_uv", ""),
-    read("bitmap: gamma", "0.6: 1 or that of sRGB"),
+    read("bitmap: gamma", "0.6: 1 or the gamma of sRGB"),
     read("bitmap: uoffset", "0.6"),
     read("bitmap: voffset", "0.6"),
     read("bitmap: uscale", "0.6"),

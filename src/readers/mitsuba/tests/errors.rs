@@ -100,7 +100,7 @@ fn errors_name_the_line_and_a_remedy() {
         ),
         (
             "<shape type=\"rectangle\"><bsdf type=\"diffuse\"><string name=\"reflectance\" value=\"red\"/></bsdf></shape>",
-            "no colour",
+            "not a colour",
         ),
         (
             "<shape type=\"rectangle\"><bsdf type=\"conductor\"><string name=\"material\" value=\"Zz\"/></bsdf></shape>",
@@ -114,7 +114,7 @@ fn errors_name_the_line_and_a_remedy() {
         (
             "<bsdf type=\"mixturebsdf\" id=\"a\"><string name=\"weights\" value=\"0.5\"/></bsdf>\
              <shape type=\"cube\"><ref id=\"a\"/></shape>",
-            "not those of 0 bsdfs",
+            "do not fit 0 bsdfs",
         ),
         ("<shape type=\"rectangle\"><boolean name=\"flip_normals\" value=\"2\"/></shape>", "boolean"),
         ("<bsdf type=\"diffuse\" id=\"a\"/><bsdf type=\"diffuse\" id=\"a\"/>", "already taken"),

@@ -241,7 +241,7 @@ fn problem(path: &Path, tag: &str, row: &Statement) -> Option<String> {
         Ok(base) => base,
         Err(error) => return Some(format!("{tag} {}: {error}", row.name)),
     };
-    let of_plugin = format!("the {tag} \"{plugin}\" is not modelled");
+    let of_plugin = format!("the {tag} \"{plugin}\" is not supported");
     let is_new = |warning: &String| !known.contains(warning) && !warning.contains(&of_plugin);
     // Whether the scene changes, and new warnings, for the values that are accepted.
     let texts = values(parameter);

@@ -181,7 +181,7 @@ impl Renderer for Settings {
     }
 
     fn about(&self) -> &'static str {
-        "Radiance cache: direct light by sampling, indirect light by records that are splatted onto nearby points"
+        "Radiance cache: direct light is sampled, indirect light comes from records splatted onto nearby points"
     }
 
     fn render(&self, world: &World, lights: &LightStore, view: &View, control: &Control) -> Output {

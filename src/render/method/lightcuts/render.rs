@@ -45,7 +45,7 @@ impl Renderer for Settings {
     }
 
     fn about(&self) -> &'static str {
-        "Lightcuts per pixel: virtual point lights, clustered as far as the expected error allows"
+        "Lightcuts per pixel: clusters of virtual point lights, refined to an expected error"
     }
 
     fn render(&self, world: &World, lights: &LightStore, view: &View, control: &Control) -> Output {

@@ -38,7 +38,7 @@ impl Renderer for Settings {
     }
 
     fn about(&self) -> &'static str {
-        "Unbiased path tracing: slow to converge, the reference"
+        "Path tracing: unbiased and slow to converge, for references"
     }
 
     fn render(&self, world: &World, _lights: &LightStore, view: &View, control: &Control) -> Output {

@@ -46,11 +46,11 @@ method_settings! {
     spp = 4, "Photon map" {
         /// Approximate number of photons on diffuse surfaces.
         photons: u32 = 600_000 => [];
-        /// Photons in an estimate of irradiance, at least 16. More photons increase bias and reduce variance.
+        /// Number of photons per estimate of irradiance, at least 16. More photons increase bias and reduce variance.
         nearest: usize = 64 => [.at_least(16.0)];
-        /// Approximate number of final gathering rays of a record.
+        /// Approximate number of final gathering rays per record.
         rays: u32 = 2000 => [.named("gather_rays").range(16.0, 1e6)];
-        /// Final gathering rays of a sample without records.
+        /// Number of final gathering rays per sample without a record.
         own_rays: u32 = 64 => [.named("sample_rays").range(1.0, 1e6)];
         /// Numbers of VPLs, of direct light only.
         light: LightPassSettings = LightPassSettings { indirect: 0, ..LightPassSettings::default() } => [
@@ -182,7 +182,7 @@ impl Renderer for Settings {
     }
 
     fn about(&self) -> &'static str {
-        "The cache with indirect light by final gathering over a photon map, for comparison"
+        "Radiance cache with final gathering over a photon map, for comparison"
     }
 
     fn render(&self, world: &World, lights: &LightStore, view: &View, control: &Control) -> Output {

@@ -46,7 +46,7 @@ impl Renderer for Settings {
     }
 
     fn about(&self) -> &'static str {
-        "Reconstruction cuts: a few eye samples of each patch share a lightcut, from which the others are lit"
+        "Reconstruction cuts: a few eye samples of each patch share a lightcut, which also lights the other samples"
     }
 
     fn render(&self, world: &World, lights: &LightStore, view: &View, control: &Control) -> Output {
