@@ -90,7 +90,7 @@ pub const PRICES: Prices = Prices {
     indirect_spp: 16.0,
     indirect_by_pixels: 0.6,
     indirect_by_spp: 0.5,
-    denoised_pixel: 3.4,
+    denoised_pixel: 6.5,
     balanced_denoising: 0.44,
     fast_denoising: 0.24,
 };

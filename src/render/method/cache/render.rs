@@ -35,7 +35,7 @@ use world::view::View;
 /// Samples of a cut at a point without records, times the cut's ε and the pixel's relative error of direct light.
 ///
 /// Variance times cost is least if the samples are in inverse proportion to that error.
-const CUT_SAMPLES: f32 = 0.6;
+const CUT_SAMPLES: f32 = 0.3;
 /// Minimum number of samples of a cut.
 const MIN_CUT_SAMPLES: f32 = 4.0;
 
