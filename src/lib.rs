@@ -24,7 +24,7 @@
 
 #![forbid(unsafe_code)]
 
-pub use base::{self, film, math, progress, setting, stats};
+pub use base::{self, film, live, math, progress, setting, stats};
 pub use render::{self, method, session, verify, walk};
 pub use world::{self, view};
 pub use {cli, readers, scene};

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# Tries the scripts beside it on a cluster of a controller and two nodes on this machine (Debian: slurmctld, slurmd, munge;
+# Tries the scripts beside it on a cluster of a controller and three nodes on this machine (Debian: slurmctld, slurmd, munge;
 # as root). One node is lost in mid-frame: its chunk is rendered by another, and the frames are those of a walk in one piece.
+# On a node with two processors, tasks get as many as they ask for. Stills, tiles and seeds are rendered there.
 #   LIGHTSPLAT=target/release/lightsplat farm/slurm/test.sh SCENE [options of lightsplat walk]
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
@@ -36,8 +37,9 @@ SlurmdPidFile=$work/slurmd-%n.pid
 SlurmctldPidFile=$work/slurmctld.pid
 AuthType=auth/munge
 ProctrackType=proctrack/pgid
-TaskPlugin=task/none
-SelectType=select/linear
+TaskPlugin=task/affinity
+SelectType=select/cons_tres
+SelectTypeParameters=CR_CPU
 SwitchType=switch/none
 MpiDefault=none
 SlurmdTimeout=10
@@ -47,11 +49,13 @@ ReturnToService=2
 SlurmdParameters=config_overrides
 NodeName=n1 NodeHostname=$(hostname -s) NodeAddr=127.0.0.1 Port=17001 CPUs=1 RealMemory=1000
 NodeName=n2 NodeHostname=$(hostname -s) NodeAddr=127.0.0.1 Port=17002 CPUs=1 RealMemory=1000
+NodeName=n3 NodeHostname=$(hostname -s) NodeAddr=127.0.0.1 Port=17003 CPUs=2 RealMemory=1000
+PartitionName=pair Nodes=n3 MaxTime=INFINITE State=UP
 PartitionName=all Nodes=n1,n2 Default=YES MaxTime=INFINITE State=UP
 CONF
 slurmctld -D >"$work/slurmctld.log" 2>&1 &
 daemons+=($!)
-for node in n1 n2; do
+for node in n1 n2 n3; do
   slurmd -D -N $node >"$work/$node.log" 2>&1 &
   daemons+=($!)
   declare "$node=$!"
@@ -89,3 +93,36 @@ for file in alone/*; do
 done
 [[ -s frames/sheet.png ]]
 echo "all $(ls alone/*.exr | wc -l) frames are there, the same as in one piece; contact sheet: $work/frames/sheet.png"
+
+# A task has the processors that it asks for, and lightsplat a thread for each.
+export SBATCH_OPTIONS="-p pair --output=$work/%x-%A_%a.log"
+mkdir pair
+processors() {
+  sbatch -p pair --wait --output="$work/pair/$1.log" --cpus-per-task="$1" --wrap nproc >/dev/null
+  cat "$work/pair/$1.log"
+}
+[[ "$(processors 1) $(processors 2)" == '1 2' ]]
+echo "a task gets the processors that it asks for"
+cat >pair/jobs.toml <<JOBS
+options = { resolution = "24x16", method = "path", spp = 16 }
+[[picture]]
+scene = "$scene"
+output = "a.exr"
+[[picture]]
+scene = "$scene"
+output = "b.exr"
+spp = 32
+JOBS
+CPUS_PER_TASK=2 "$here/stills.sh" pair/jobs.toml
+export CPUS_PER_TASK=1
+small=(--resolution 24x16 --method path --spp 16 --no-denoise)
+"$here/tiles.sh" "$scene" "$work/pair/tiled.exr" 2x2 "${small[@]}"
+"$here/seeds.sh" "$scene" "$work/pair/merged.exr" 2 "${small[@]}"
+until [[ -z $(squeue -h) ]]; do sleep 0.5; done
+for file in {a,b}.{exr,png} tiled.tile.{0,1,2,3}.exr merged.exr; do
+  [[ -s pair/$file ]] || {
+    echo "$file is missing"
+    exit 1
+  }
+done
+echo "stills, tiles and merged seeds are there"

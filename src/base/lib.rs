@@ -1,7 +1,7 @@
 //! Foundation of all crates: what knows nothing of scenes.
 //!
 //! - [`math`]: colours, frames, lanes and real functions; [`sampling`]: random numbers;
-//! - [`parallel`], [`progress`], [`stats`]: threads, cancellation, counters and times;
+//! - [`parallel`], [`progress`], [`stats`]: threads, cancellation, counters and times; [`live`]: images in the making;
 //! - [`setting`]: settings, each declared once; [`kd_tree`]: search for near points;
 //! - [`exr_file`]: reader of OpenEXR files; [`film`]: images, their layers, files and error measures.
 
@@ -10,6 +10,7 @@
 pub mod exr_file;
 pub mod film;
 pub mod kd_tree;
+pub mod live;
 pub mod math;
 pub mod parallel;
 pub mod progress;

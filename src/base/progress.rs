@@ -4,8 +4,10 @@
 //! (a tile, a batch of photon paths) it asks [`Control::is_cancelled`]. If that is true, the method returns its partial
 //! result, marked incomplete. Nothing here influences the image.
 
+use crate::live::LiveImage;
 use crate::stats::Stage;
 use std::mem;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
@@ -16,6 +18,8 @@ pub struct Control {
     /// Stage and total. `done` is reset under this lock, so a snapshot never mixes two stages.
     stage: Mutex<ProgressState>,
     done: AtomicU64,
+    /// Image that watchers see, if there are any.
+    live: Mutex<Option<Arc<LiveImage>>>,
 }
 
 #[derive(Debug, Default)]
@@ -74,6 +78,19 @@ impl Control {
     #[inline]
     pub fn is_cancelled(&self) -> bool {
         self.cancelled.load(Ordering::Relaxed)
+    }
+
+    /// Sets the image that watchers see; `None` if nobody watches.
+    pub fn watch(&self, live: Option<Arc<LiveImage>>) {
+        *self.live.lock().unwrap_or_else(PoisonError::into_inner) = live;
+    }
+
+    /// Returns the image that watchers see, if they watch an image of this width and height.
+    ///
+    /// Renders of another size are trials of a plan.
+    pub fn live(&self, size: [u32; 2]) -> Option<Arc<LiveImage>> {
+        let live = self.live.lock().unwrap_or_else(PoisonError::into_inner);
+        live.clone().filter(|live| live.size() == size)
     }
 
     /// Clears the stages of the previous frame.
@@ -166,6 +183,16 @@ mod tests {
         assert_eq!(planned, (vec![Stage::Plan], Some(now)));
         control.begin(Stage::Render, 5);
         assert_eq!(control.news(), (vec![Stage::Render], Some(Progress { is_planning: false, ..now })));
+    }
+
+    #[test]
+    fn only_images_of_the_size_that_is_watched_are_shown() {
+        let control = Control::new();
+        assert!(control.live([2, 1]).is_none());
+        control.watch(Some(Arc::new(LiveImage::new([2, 1]))));
+        assert!(control.live([2, 1]).is_some() && control.live([1, 2]).is_none());
+        control.watch(None);
+        assert!(control.live([2, 1]).is_none());
     }
 
     #[test]

@@ -5,6 +5,7 @@ use super::denoise_args::{DenoiseArgs, DenoiseFileArgs};
 use super::develop::DevelopArgs;
 use super::exit;
 use super::generate_args::GenerateArgs;
+use super::live_args::LiveArgs;
 use super::method_args::MethodArgs;
 use super::plan_args::{PlanArgs, Quality};
 use super::png_args::{PngArgs, ToneArgs};
@@ -13,7 +14,7 @@ use super::short_help::shortened;
 use super::values::{
     Bytes, Crop, ImageFormat, Loudness, ProgressMode, Resolution, counted, feature, q_scale,
 };
-use super::version;
+use super::{talk, threads, version};
 use clap::{Arg, ArgGroup, Args, CommandFactory, FromArgMatches, Parser, Subcommand, ValueEnum};
 use render::session::Feature;
 use render::walk::{FileNames, FrameList, Q_SCALE, RetentionLimits};
@@ -133,7 +134,7 @@ pub struct RenderArgs {
 #[derive(Debug, Args)]
 pub struct PictureArgs {
     /// Number of threads. The image does not depend on it [default: number of processors]
-    #[arg(short, long, value_parser = clap::value_parser!(u32).range(1..=4096))]
+    #[arg(short, long, env = threads::VARIABLE, value_parser = clap::value_parser!(u32).range(1..=4096))]
     pub threads: Option<u32>,
     /// Image size in pixels. W or xH alone keeps the aspect ratio of the scene, N% scales its size [default: from the
     /// scene]
@@ -150,6 +151,9 @@ pub struct PictureArgs {
     /// Denoising.
     #[command(flatten)]
     pub denoise: DenoiseArgs,
+    /// Previews.
+    #[command(flatten)]
+    pub live: LiveArgs,
     /// Skip complete images of the same scene, settings and program version. Continue interrupted images of --method
     /// path
     #[arg(long)]
@@ -157,11 +161,15 @@ pub struct PictureArgs {
     /// Fail before rendering if an output file already exists
     #[arg(long, conflicts_with = "resume")]
     pub no_overwrite: bool,
+    /// Print the files that would be written, the resolution, the method and the memory, and write nothing. The command
+    /// ends with the error that the run would have before rendering
+    #[arg(long)]
+    pub dry_run: bool,
     /// Leave times and the number of threads out of all files, so that equal renders give equal files
     #[arg(long)]
     pub reproducible: bool,
     /// Form of progress and messages on standard error
-    #[arg(long, value_enum, default_value_t = ProgressMode::Auto)]
+    #[arg(long, value_enum, env = talk::VARIABLE, default_value_t = ProgressMode::Auto)]
     pub progress: ProgressMode,
     /// Print only errors
     #[arg(short, long, conflicts_with = "verbose")]
@@ -194,7 +202,8 @@ pub struct WalkArgs {
     /// Images to write. `####` or `%04d` stands for the number of the frame: f.####.exr or f.%04d.exr
     #[arg(short, long, value_name = "NAME.####.exr")]
     pub output: FileNames,
-    /// Frames to render, counted from 1: 7, 1-10, 1-100x5 (every fifth), or a list of ranges [default: all]
+    /// Frames to render, counted from 1: 7, 1-10, 1-100x5 (every fifth), or a list of ranges. 1..10, 1:10
+    /// and 1-100:5 are read, too [default: all]
     #[arg(short, long, value_name = "LIST")]
     pub frames: Option<FrameList>,
     /// Render the frames in chunks of N. Each chunk starts without records. Several machines may render one chunk each,
@@ -246,6 +255,9 @@ pub struct BatchArgs {
     /// Print the number, scene and output of each entry, and render nothing
     #[arg(long, conflicts_with = "only")]
     pub list: bool,
+    /// Print the files that would be written, the resolution, the method and the memory of each entry, and write nothing
+    #[arg(long)]
+    pub dry_run: bool,
     /// Render only these entries, counted from 1 over all job files: 7, 1-10, or a list of ranges
     #[arg(long, value_name = "LIST")]
     pub only: Option<FrameList>,
@@ -253,10 +265,10 @@ pub struct BatchArgs {
     #[arg(long)]
     pub resume: bool,
     /// Number of threads. The images do not depend on it [default: number of processors]
-    #[arg(long, value_parser = clap::value_parser!(u32).range(1..=4096))]
+    #[arg(long, env = threads::VARIABLE, value_parser = clap::value_parser!(u32).range(1..=4096))]
     pub threads: Option<u32>,
     /// Form of progress and messages on standard error
-    #[arg(long, value_enum, default_value_t = ProgressMode::Auto)]
+    #[arg(long, value_enum, env = talk::VARIABLE, default_value_t = ProgressMode::Auto)]
     pub progress: ProgressMode,
 }
 

@@ -100,8 +100,9 @@ impl BatchRun {
             self.scene(of_scene)?;
         }
         let done = self.count - self.failed;
+        let what = if self.args.dry_run { "can be rendered" } else { "done" };
         talk::summary(
-            &format!("{done} of {} images and walks done", self.count),
+            &format!("{done} of {} images and walks {what}", self.count),
             || json!({ "done": done, "failed": self.failed }),
         );
         match self.failed {
@@ -170,10 +171,12 @@ impl BatchRun {
         match entry.command()? {
             Command::Render(mut args) => {
                 args.picture.progress = self.args.progress;
+                args.picture.dry_run |= self.args.dry_run;
                 Ok(Job::Still(Box::new(RenderJob::new(*args, Stopwatch::start())?)))
             }
             Command::Walk(mut args) => {
                 args.picture.progress = self.args.progress;
+                args.picture.dry_run |= self.args.dry_run;
                 Ok(Job::Walk(Box::new(WalkJob::new(*args)?)))
             }
             _ => Err(Failure::usage(anyhow!(

@@ -23,7 +23,7 @@ use toml::{Spanned, Table, Value};
 const OF_THE_BATCH: [&str; 2] = ["threads", "progress"];
 
 /// Options that name a file.
-const FILES: [&str; 2] = ["png", "env"];
+const FILES: [&str; 3] = ["png", "preview", "env"];
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]

@@ -3,7 +3,7 @@
 use super::bench_args::{BenchArgs, StudyArgs};
 use super::exit::Failure;
 use super::outputs::Inputs;
-use super::{files, opened, study, talk, threads};
+use super::{bench_args, files, opened, study, talk, threads};
 use anyhow::anyhow;
 use base::film::atomic;
 use bench::export::{WRITERS, terminal};
@@ -13,8 +13,9 @@ use std::path::PathBuf;
 
 /// Runs the command.
 pub fn run(args: BenchArgs) -> Result<(), Failure> {
-    let Some(benchmark) = bench::named(&args.benchmark) else {
-        return Err(Failure::usage(anyhow!("there is no benchmark {}", args.benchmark)));
+    let Some(name) = &args.benchmark else { return talk::print(&bench_args::list()) };
+    let Some(benchmark) = bench::named(name) else {
+        return Err(Failure::usage(anyhow!("there is no benchmark {name}")));
     };
     let name = benchmark.name;
     let (needs_scene, measure) = match benchmark.kind {

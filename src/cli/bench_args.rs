@@ -1,7 +1,7 @@
 //! Options of `bench`.
 
-use super::exit;
 use super::values::Resolution;
+use super::{exit, threads};
 use bench::{Benchmark, REGISTRY};
 use clap::Args;
 use clap::builder::PossibleValuesParser;
@@ -11,15 +11,15 @@ use std::path::PathBuf;
 #[derive(Debug, Args)]
 #[command(after_help = list(), after_long_help = format!("{}\n{}", list(), exit::HELP))]
 pub struct BenchArgs {
-    /// Name of the benchmark
+    /// Name of the benchmark [default: print the list of benchmarks]
     #[arg(value_parser = PossibleValuesParser::new(REGISTRY.iter().map(|b| b.name)), hide_possible_values = true)]
-    pub benchmark: String,
+    pub benchmark: Option<String>,
     /// Scenes to measure, if the benchmark needs any: lightsplat TOML, Mitsuba or glTF. Studies also accept names of
     /// scenes in --scenes
     #[arg(value_name = "SCENE")]
     pub scenes: Vec<PathBuf>,
     /// Number of threads of multi-threaded cases [default: number of processors]
-    #[arg(long, value_parser = clap::value_parser!(u32).range(1..=4096))]
+    #[arg(long, env = threads::VARIABLE, value_parser = clap::value_parser!(u32).range(1..=4096))]
     pub threads: Option<u32>,
     /// Number of samples per case. A study renders each image this often, and the fastest run counts. `extremes` takes
     /// the number of seeds [default: 7; studies: 1; extremes: 4]
@@ -83,8 +83,8 @@ fn parse_seconds(text: &str) -> Result<f64, String> {
     }
 }
 
-/// Returns the list of benchmarks for `--help`.
-fn list() -> String {
+/// Returns the list of benchmarks.
+pub fn list() -> String {
     let line = |b: &Benchmark| format!("  {:<18}{}\n", format!("{}{}", b.name, b.operand()), b.about);
     format!("Benchmarks:\n{}", REGISTRY.iter().map(line).collect::<String>())
 }

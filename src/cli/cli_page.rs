@@ -24,6 +24,8 @@ all options. To update the page, run `UPDATE_DOCS=1 cargo test -p cli --lib cli_
 
 | environment variable | meaning |
 |---|---|
+| `LIGHTSPLAT_THREADS` | number of threads, if `--threads` is not given |
+| `LIGHTSPLAT_PROGRESS` | form of the messages, if `--progress` is not given |
 | `OIDN_DIR` | folder of Open Image Denoise |
 | `EMBREE_DIR` | folder of Embree, for the build |
 | `LIGHTSPLAT_ISA` | largest instruction set that a wheel or tarball uses: `x86-64-v3` or `x86-64-v4` |

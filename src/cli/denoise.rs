@@ -2,7 +2,7 @@
 
 use super::denoise_args::DenoiseFileArgs;
 use super::exit::Failure;
-use super::outputs::{Inputs, check_outputs};
+use super::outputs::{Inputs, OutputCheck, check_outputs};
 use super::{talk, threads};
 use anyhow::anyhow;
 use base::film::{ExrFile, Image, ImageError, write_png};
@@ -14,7 +14,7 @@ pub fn run(args: DenoiseFileArgs) -> Result<(), Failure> {
     let input = &args.input;
     let output = args.output.clone().unwrap_or_else(|| input.with_extension("denoised.exr"));
     let png = args.png.file(&output);
-    check_outputs(Some(&output), png.as_deref(), false)?;
+    check_outputs(Some(&output), png.as_deref(), OutputCheck::default())?;
     Inputs::new([input]).check_apart([&output].into_iter().chain(&png).map(PathBuf::as_path))?;
     let mut file = ExrFile::read(input).map_err(Failure::input)?;
     file.check_whole().map_err(Failure::input)?;

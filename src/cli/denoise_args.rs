@@ -2,6 +2,7 @@
 
 use super::exit::{self, Failure};
 use super::png_args::PngArgs;
+use super::threads;
 use anyhow::anyhow;
 use clap::{Args, ValueEnum};
 use render::denoise::Quality;
@@ -88,7 +89,7 @@ pub struct DenoiseFileArgs {
     #[arg(long)]
     pub keep_noisy: bool,
     /// Number of threads. The image does not depend on it [default: number of processors]
-    #[arg(long, value_parser = clap::value_parser!(u32).range(1..=4096))]
+    #[arg(long, env = threads::VARIABLE, value_parser = clap::value_parser!(u32).range(1..=4096))]
     pub threads: Option<u32>,
     /// The tone-mapped image.
     #[command(flatten)]

@@ -1,7 +1,7 @@
 //! `lightsplat develop`: makes a PNG of an OpenEXR image, with another exposure or view.
 
 use super::exit::{self, Failure};
-use super::outputs::{Inputs, check_outputs};
+use super::outputs::{Inputs, OutputCheck, check_outputs};
 use super::png_args::ToneArgs;
 use super::talk;
 use base::film::{ExrFile, write_png};
@@ -25,7 +25,7 @@ pub struct DevelopArgs {
 /// Runs the command.
 pub fn run(args: DevelopArgs) -> Result<(), Failure> {
     let output = args.output.unwrap_or_else(|| args.input.with_extension("png"));
-    check_outputs(None, Some(&output), false)?;
+    check_outputs(None, Some(&output), OutputCheck::default())?;
     Inputs::new([&args.input]).check_apart([output.as_path()])?;
     let color = ExrFile::read(&args.input).and_then(|file| file.color()).map_err(Failure::input)?;
     let look = args.tone.tone().look(&color);

@@ -1,19 +1,25 @@
-//! Signals: Ctrl-C, SIGTERM and SIGHUP.
+//! Signals: Ctrl-C, SIGTERM and SIGHUP, and SIGUSR1.
 //!
 //! The first signal asks the method to stop and to return its partial result. The second signal ends the process at
 //! once. Files are complete or unchanged, so that no existing file is lost. While a scene is read there is no partial
 //! result, and the first signal ends the process.
+//!
+//! SIGUSR1 asks for a preview.
 
 use super::exit::{self, Failure};
 use super::talk;
 use anyhow::anyhow;
 use base::progress::Control;
 use embree::leave;
-use std::sync::Arc;
+use signal_hook::consts::SIGUSR1;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, OnceLock};
 
 /// True while a scene is being read.
 static IS_OPENING: AtomicBool = AtomicBool::new(false);
+
+/// True while SIGUSR1 asks for a preview.
+static WANTS_PREVIEW: OnceLock<Arc<AtomicBool>> = OnceLock::new();
 
 /// Resets [`IS_OPENING`] when it is dropped, after a panic, too.
 struct Opening;
@@ -31,11 +37,25 @@ pub fn while_opening<R>(work: impl FnOnce() -> R) -> R {
     work()
 }
 
-/// Cancels `control` when a signal arrives. Call it once per process.
+/// Returns true if a signal asks for a preview that is not there yet.
+pub fn wants_preview() -> bool {
+    WANTS_PREVIEW.get().is_some_and(|wants| wants.load(Ordering::SeqCst))
+}
+
+/// Ends the request for a preview.
+pub fn preview_is_there() {
+    if let Some(wants) = WANTS_PREVIEW.get() {
+        wants.store(false, Ordering::SeqCst);
+    }
+}
+
+/// Cancels `control` when a signal to end arrives, and takes requests for previews. Call it once per process.
 ///
 /// # Errors
-/// If the handler cannot be installed.
+/// If a handler cannot be installed.
 pub fn cancel_on_signal(control: &Arc<Control>) -> Result<(), ctrlc::Error> {
+    let wants = WANTS_PREVIEW.get_or_init(Arc::default);
+    signal_hook::flag::register(SIGUSR1, Arc::clone(wants)).map_err(ctrlc::Error::System)?;
     let control = Arc::clone(control);
     ctrlc::set_handler(move || {
         if control.is_cancelled() {

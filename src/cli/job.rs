@@ -2,6 +2,8 @@
 
 use super::args::{RenderArgs, StatsFormat};
 use super::exit::Failure;
+use super::live::Previews;
+use super::outputs::{Inputs, OutputCheck};
 use super::still_files::StillFiles;
 use super::values::{ProgressMode, Resolution};
 use super::{job_key, threads, verify};
@@ -23,6 +25,10 @@ pub struct RenderJob {
     pub reading: LoadOptions,
     /// Files to write. Their folder is writable.
     pub files: StillFiles,
+    /// Previews while it is rendered.
+    pub previews: Previews,
+    /// True if nothing is rendered or written.
+    pub dry_run: bool,
     /// True if an existing image with the same key is not rendered again.
     pub resume: bool,
     /// True if the files must depend on scene and settings alone.
@@ -57,7 +63,11 @@ impl RenderJob {
         let verify = verify::settings(&args.verify, &method, args.plan.error.is_some());
         let plan = args.plan.goal(&method, pinned, args.verify.verify_samples, run)?;
         let files = StillFiles::new(&args)?;
-        files.check(args.picture.resume, args.picture.no_overwrite)?;
+        let dry_run = args.picture.dry_run;
+        let check = OutputCheck { may_stay: args.picture.resume, is_dry: dry_run };
+        files.check(check, args.picture.no_overwrite)?;
+        let previews = Previews::new(args.picture.live, args.png.tone.tone(), check)?;
+        Inputs::default().check_apart(files.paths().chain(previews.file()))?;
         if args.picture.resume && files.exr.is_none() {
             return Err(Failure::usage(anyhow!("--resume needs an OpenEXR file; name one with -o")));
         }
@@ -84,6 +94,8 @@ impl RenderJob {
                 ..args.picture.reading.options()
             },
             files,
+            previews,
+            dry_run,
             resume: args.picture.resume,
             reproducible: args.picture.reproducible,
             goal,

@@ -4,7 +4,7 @@
 
 use super::args::MergeArgs;
 use super::exit::Failure;
-use super::outputs::{Inputs, check_outputs};
+use super::outputs::{Inputs, OutputCheck, check_outputs};
 use super::talk;
 use anyhow::anyhow;
 use base::film::metrics::{rel_mse_of_variance, standard_error};
@@ -22,7 +22,7 @@ const OWN: [&str; 3] = ["job", "render_seconds", "threads"];
 /// Runs the command.
 pub fn run(args: MergeArgs) -> Result<(), Failure> {
     let png = args.png.file(&args.output);
-    check_outputs(Some(&args.output), png.as_deref(), false)?;
+    check_outputs(Some(&args.output), png.as_deref(), OutputCheck::default())?;
     Inputs::new(&args.inputs).check_apart([&args.output].into_iter().chain(&png).map(PathBuf::as_path))?;
     let mut files = Vec::new();
     for path in &args.inputs {

@@ -118,18 +118,27 @@ impl MethodSetting {
         self.defaults.iter().map(|(method, _)| method.name()).collect()
     }
 
-    /// Returns the default of the first method, followed by each other default with its methods.
+    /// Returns the default. If it differs between methods, each value has its methods behind it; the value of most of
+    /// them comes last.
     fn default(&self) -> String {
         let mut groups: Vec<(&str, Vec<&str>)> = Vec::new();
         for (method, text) in &self.defaults {
-            match groups.iter_mut().find(|(other, _)| other == text) {
+            match groups.iter_mut().find(|(known, _)| known == text) {
                 Some((_, methods)) => methods.push(method.name()),
                 None => groups.push((text, vec![method.name()])),
             }
         }
-        let Some(((first, _), others)) = groups.split_first() else { return String::new() };
-        let others = others.iter().map(|(text, methods)| format!("; {text} for {}", methods.join(", ")));
-        (*first).to_owned() + &others.collect::<String>()
+        if let [(only, _)] = groups[..] {
+            return only.to_owned();
+        }
+        groups.sort_by_key(|(_, methods)| methods.len());
+        let count = groups.len();
+        let of = |(i, (text, methods)): (usize, &(&str, Vec<&str>))| match methods.len() > 1 && i + 1 == count
+        {
+            true => format!("{text} (others)"),
+            false => format!("{text} ({})", methods.join(", ")),
+        };
+        groups.iter().enumerate().map(of).collect::<Vec<_>>().join(", ")
     }
 
     /// Builds the option.
@@ -189,10 +198,7 @@ mod tests {
         let told = |key: &str| all.iter().find(|setting| setting.spec.key == key).unwrap().default();
         assert_eq!(
             (told("spp"), told("least_cell")),
-            (
-                "16; 4 for reconstruction, photon-cache, lightcuts; 64 for path".to_owned(),
-                "256; 32 for photon-cache".to_owned()
-            )
+            ("16 (cache), 64 (path), 4 (others)".to_owned(), "256 (cache), 32 (photon-cache)".to_owned())
         );
     }
 

@@ -47,7 +47,7 @@ fn report(path: &Path, warnings: &[Warning], repairs: &SanitizeReport) {
 }
 
 /// Groups warnings that differ in their place only. Returns the first of each group with the number of its members.
-fn grouped(warnings: &[Warning]) -> Vec<(&Warning, usize)> {
+pub fn grouped(warnings: &[Warning]) -> Vec<(&Warning, usize)> {
     let mut groups: Vec<(&Warning, usize)> = Vec::new();
     for warning in warnings {
         let same = |known: &Warning| {

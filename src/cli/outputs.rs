@@ -9,14 +9,20 @@ use std::ffi::OsStr;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Checks the names of the files of an image, and that they can be written. A missing folder is made if the folder
-/// above it exists.
-///
-/// If existing files `may_stay`, [`check_unprotected`] must check later whether they are write-protected.
+/// Check of a file that a command will write.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct OutputCheck {
+    /// True if an existing file may stay. Then [`check_unprotected`] must check later whether it is write-protected.
+    pub may_stay: bool,
+    /// True if nothing may change on the disk.
+    pub is_dry: bool,
+}
+
+/// Checks the names of the files of an image, and that they can be written.
 ///
 /// # Errors
 /// If a name is wrong, a file cannot be written, or two files are the same.
-pub fn check_outputs(exr: Option<&Path>, png: Option<&Path>, may_stay: bool) -> Result<(), Failure> {
+pub fn check_outputs(exr: Option<&Path>, png: Option<&Path>, check: OutputCheck) -> Result<(), Failure> {
     if let Some(path) = exr {
         check_name(path, "exr", "--output", "for OpenEXR")?;
     }
@@ -24,17 +30,27 @@ pub fn check_outputs(exr: Option<&Path>, png: Option<&Path>, may_stay: bool) -> 
         check_name(path, "png", "--png", "for PNG")?;
     }
     let paths = || exr.into_iter().chain(png);
-    paths().for_each(make_folder);
-    let check = if may_stay { atomic::check_place } else { atomic::check_writable };
-    paths().try_for_each(|path| check(path).map_err(Failure::output))?;
+    paths().try_for_each(|path| check_output(path, check))?;
     Inputs::default().check_apart(paths())
 }
 
-/// Makes the folder of a file if it alone is missing. If it cannot be made, the check of the file says so.
-fn make_folder(path: &Path) {
-    if let Some(folder) = path.parent().filter(|folder| !folder.as_os_str().is_empty() && !folder.exists()) {
-        let _ = fs::create_dir(folder);
+/// Checks that a file can be written. Its folder is made if it alone is missing.
+///
+/// # Errors
+/// If the file cannot be written.
+pub fn check_output(path: &Path, check: OutputCheck) -> Result<(), Failure> {
+    let is_missing = |folder: &&Path| !folder.as_os_str().is_empty() && !folder.exists();
+    if let Some(folder) = path.parent().filter(is_missing) {
+        if check.is_dry && atomic::check_place(folder).is_ok() {
+            return Ok(());
+        }
+        if !check.is_dry {
+            // If it cannot be made, the check of the file says so.
+            let _ = fs::create_dir(folder);
+        }
     }
+    let check = if check.may_stay { atomic::check_place } else { atomic::check_writable };
+    check(path).map_err(Failure::output)
 }
 
 /// Refuses files that exist.

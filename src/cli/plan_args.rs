@@ -95,7 +95,7 @@ fn unplannable(options: &str) -> Failure {
 }
 
 /// Parses a duration; returns seconds.
-fn parse_time(text: &str) -> Result<f64, String> {
+pub fn parse_time(text: &str) -> Result<f64, String> {
     let units = [("ms", 1e-3), ("s", 1.0), ("m", 60.0), ("h", 3600.0), ("", 1.0)];
     let seconds = units.iter().find_map(|&(unit, factor)| {
         let number: f64 = text.strip_suffix(unit)?.trim().parse().ok()?;

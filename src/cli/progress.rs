@@ -1,5 +1,6 @@
 //! Progress messages on stderr. A thread of their own reads the [`Control`] of the method.
 
+use super::beside::{beside, goes_on};
 use super::course::RunProgress;
 use super::talk;
 use super::values::{Loudness, ProgressMode};
@@ -7,8 +8,7 @@ use base::progress::{Control, Progress};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use serde_json::{Value, json};
 use std::io::IsTerminal;
-use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
-use std::thread;
+use std::sync::mpsc::Receiver;
 use std::time::Duration;
 
 /// Interval between updates of the bar.
@@ -91,22 +91,6 @@ impl Watch {
     pub fn frames(&self) -> [usize; 2] {
         self.run.frames()
     }
-}
-
-/// Runs `work` here and `watch` in another thread. The channel of `watch` closes when `work` ends or panics.
-fn beside<R>(work: impl FnOnce() -> R, watch: impl FnOnce(Receiver<()>) + Send) -> R {
-    thread::scope(|scope| {
-        let (open, stop) = channel();
-        scope.spawn(|| watch(stop));
-        let result = work();
-        drop(open);
-        result
-    })
-}
-
-/// Waits for an interval. Returns false when the work has ended.
-fn goes_on(stop: &Receiver<()>, interval: Duration) -> bool {
-    matches!(stop.recv_timeout(interval), Err(RecvTimeoutError::Timeout))
 }
 
 /// Shows one progress bar of the whole run until the work ends.
@@ -225,13 +209,5 @@ mod tests {
             assert_eq!(watch.frame(None, &control, || 8, |result| *result == 7), 8);
             assert_eq!(watch.frames(), [1, 2]);
         }
-    }
-
-    #[test]
-    fn the_watcher_ends_when_the_work_panics() {
-        let result = std::panic::catch_unwind(|| {
-            beside(|| panic!("at work"), |stop| while goes_on(&stop, BAR_INTERVAL) {})
-        });
-        assert!(result.is_err());
     }
 }

@@ -5,9 +5,10 @@ use super::course::{RunProgress, RunSpan, Stages};
 use super::exit::Failure;
 use super::job::RenderJob;
 use super::job_key;
+use super::live::{Showing, ShownFrame};
 use super::outputs::{self, Inputs};
 use super::progress::Watch;
-use super::{interrupt, opened, picture, talk, threads};
+use super::{dry_run, interrupt, opened, picture, talk, threads};
 use anyhow::{Context, anyhow};
 use base::film::SAMPLES;
 use base::progress::Control;
@@ -46,10 +47,13 @@ pub fn still(job: &RenderJob, opened: &Opened, span: RunSpan, control: &Control)
         return Ok(());
     }
     let inputs = Inputs::of(&opened.session);
-    inputs.check_apart(job.files.paths())?;
+    inputs.check_apart(job.files.paths().chain(job.previews.file()))?;
     outputs::check_unprotected(job.files.paths())?;
     if let Some(png) = png.filter(|_| job.goal.method.inspects()) {
         inputs.check_layers(png)?;
+    }
+    if job.dry_run {
+        return dry_run::still(job, &opened.session);
     }
     let begun = job.files.exr.as_ref().filter(|_| job.resume);
     let begun = begun.and_then(|exr| {
@@ -61,7 +65,9 @@ pub fn still(job: &RenderJob, opened: &Opened, span: RunSpan, control: &Control)
         begun
     });
     let progress = Watch::new(job.progress, RunProgress::new(1, Stages::of(&job.goal), span));
-    let mut frame = render(job, opened, begun, progress, control)?;
+    let mut showing = job.previews.begin(&job.files.names().concat());
+    let work = Work { begun, progress, showing: &mut showing };
+    let mut frame = render(job, opened, work, control)?;
     let files = job.files.of_image(frame.complete);
     frame.facts["output"] = files.main().to_string_lossy().into();
     frame.facts["png"] = files.png.as_ref().map(|(path, _)| path.to_string_lossy()).into();
@@ -73,6 +79,8 @@ pub fn still(job: &RenderJob, opened: &Opened, span: RunSpan, control: &Control)
     let can_go_on = files.exr.is_some() && frame.film.layers.iter().any(|layer| layer.name == SAMPLES);
     let RenderedFrame { film, mut stats, mut facts, remarks, measured, complete, unverified, .. } = frame;
     say(&remarks);
+    showing.rendered(&film.color);
+    showing.last(&film.color);
     let exposed = files.png.as_ref().map(|(path, tone)| (path.as_path(), tone.look(&film.color)));
     let written = stats.time(Stage::Write, || picture::write(files.exr.as_deref(), exposed, film))?;
     job.files.deliver(&written.said(job.run.elapsed()), &written.files)?;
@@ -123,14 +131,17 @@ fn say(remarks: &[Remark]) {
     }
 }
 
-/// Renders the frame. Adds the times of opening the session, and the facts that only the command knows.
-fn render(
-    job: &RenderJob,
-    opened: &Opened,
+/// Beginning of an image, and watchers of its rendering.
+struct Work<'a, 'b> {
+    /// Samples of an interrupted run.
     begun: Option<PartialImage>,
-    mut progress: Watch,
-    control: &Control,
-) -> Result<RenderedFrame, Failure> {
+    progress: Watch,
+    showing: &'a mut Showing<'b>,
+}
+
+/// Renders the frame. Adds the times of opening the session, and the facts that only the command knows.
+fn render(job: &RenderJob, opened: &Opened, work: Work, control: &Control) -> Result<RenderedFrame, Failure> {
+    let Work { begun, mut progress, showing } = work;
     let Opened { session, warnings, .. } = opened;
     let view = View::new(&session.cameras, &job.framing(session)).map_err(Failure::usage)?;
     if control.is_cancelled() {
@@ -143,7 +154,12 @@ fn render(
     let is_done = |frame: &Result<RenderedFrame, FrameError>| {
         frame.as_ref().is_ok_and(|frame| frame.complete && !frame.unverified)
     };
-    let frame = progress.frame(job.frame, control, work, is_done);
+    let shown = ShownFrame {
+        size: [view.window.width, view.window.height],
+        look: None,
+        beside: job.files.preview(&job.scene),
+    };
+    let frame = progress.frame(job.frame, control, || showing.frame(&shown, control, work), is_done);
     let mut frame = frame.map_err(|error| match error {
         FrameError::Interrupted | FrameError::Unplanned => Failure::interrupted(error),
         FrameError::Memory { .. } | FrameError::Unplannable(_) => Failure::usage(error),

@@ -2,7 +2,7 @@
 
 use super::args::RenderArgs;
 use super::exit::Failure;
-use super::outputs::{self, check_name};
+use super::outputs::{self, OutputCheck, check_name};
 use super::values::ImageFormat;
 use super::{picture, talk};
 use anyhow::{Context, anyhow};
@@ -79,12 +79,26 @@ impl StillFiles {
         self.exr.as_deref().into_iter().chain(self.png.as_ref().map(|(path, _)| path.as_path()))
     }
 
-    /// Checks that the files can be written. Existing ones may have to stay as they are (see
-    /// [`outputs::check_outputs`]).
-    pub fn check(&self, may_stay: bool, no_overwrite: bool) -> Result<(), Failure> {
+    /// Checks that the files can be written, and with `no_overwrite` that they do not exist.
+    pub fn check(&self, check: OutputCheck, no_overwrite: bool) -> Result<(), Failure> {
         let png = self.png.as_ref().map(|(path, _)| path.as_path());
-        outputs::check_outputs(self.exr.as_deref(), png, may_stay)?;
+        outputs::check_outputs(self.exr.as_deref(), png, check)?;
         if no_overwrite { outputs::check_new(self.paths()) } else { Ok(()) }
+    }
+
+    /// Returns the names for users: `-` for standard output.
+    pub fn names(&self) -> Vec<String> {
+        match self.piped {
+            Some(_) => vec!["-".to_owned()],
+            None => self.paths().map(|path| path.display().to_string()).collect(),
+        }
+    }
+
+    /// Returns the file of a preview of the image of `scene`, beside the others.
+    pub fn preview(&self, scene: &Path) -> PathBuf {
+        let main =
+            if self.piped.is_some() { Path::new(scene.file_name().unwrap_or_default()) } else { self.main() };
+        main.with_extension("preview.png")
     }
 
     /// Returns the files of an image. A partial image gets files beside them if these may be complete.

@@ -12,6 +12,9 @@ use std::path::PathBuf;
 use std::sync::OnceLock;
 use std::time::Instant;
 
+/// Environment variable of the form of the messages.
+pub const VARIABLE: &str = "LIGHTSPLAT_PROGRESS";
+
 /// Version of the schema of events. A version ends if a field or an event is removed or changes its meaning.
 const SCHEMA: u32 = 1;
 

@@ -3,6 +3,9 @@
 use super::exit::Failure;
 use anyhow::Context;
 
+/// Environment variable of the number of threads.
+pub const VARIABLE: &str = "LIGHTSPLAT_THREADS";
+
 /// Returns the number of threads: as given, or the number of processors.
 pub fn count(typed: Option<u32>) -> usize {
     typed.map_or_else(|| std::thread::available_parallelism().map_or(1, |n| n.get()), |n| n as usize)

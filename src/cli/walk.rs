@@ -3,11 +3,12 @@
 use super::args::WalkArgs;
 use super::course::{RunProgress, RunSpan, Stages};
 use super::exit::Failure;
+use super::live::{Showing, ShownFrame};
 use super::outputs::{self, Inputs};
 use super::progress::Watch;
 use super::walk_job::{PlannedChunk, WalkJob};
 use super::walk_report::WalkReport;
-use super::{interrupt, opened, picture, talk, threads};
+use super::{dry_run, interrupt, opened, picture, talk, threads};
 use anyhow::{Context, anyhow};
 use base::film::{Exposure, Film, Image, Look};
 use base::progress::Control;
@@ -46,11 +47,15 @@ pub fn walk(job: &WalkJob, opened: &Opened, span: RunSpan, control: &Control) ->
     let inputs = Inputs::of(session);
     for number in chunks.iter().flat_map(|chunk| &chunk.frames) {
         let (exr, png) = job.files(*number);
-        inputs.check_apart([&exr].into_iter().chain(&png).map(PathBuf::as_path))?;
+        let files = [&exr].into_iter().chain(&png).map(PathBuf::as_path);
+        inputs.check_apart(files.chain(job.previews.file()))?;
     }
     for number in chunks.iter().flat_map(PlannedChunk::unwritten) {
         let (exr, png) = job.files(number);
         outputs::check_unprotected([&exr].into_iter().chain(&png).map(PathBuf::as_path))?;
+    }
+    if job.dry_run {
+        return dry_run::walk(job, session, &chunks);
     }
     let mut report = WalkReport::new(job.stats);
     for number in chunks.iter().flat_map(PlannedChunk::untouched) {
@@ -59,9 +64,9 @@ pub fn walk(job: &WalkJob, opened: &Opened, span: RunSpan, control: &Control) ->
     }
     let count = chunks.iter().map(PlannedChunk::count).sum();
     let progress = Watch::new(job.progress, RunProgress::new(count, Stages::of(&job.goal), span));
-    let said = BTreeSet::new();
-    let mut frames =
-        Frames { job, session, warnings: warnings.len(), control, look: None, report, progress, said };
+    let (warnings, said) = (warnings.len(), BTreeSet::new());
+    let showing = job.previews.begin(&job.name());
+    let mut frames = Frames { job, session, warnings, control, look: None, report, progress, showing, said };
     let ended = chunks.into_iter().try_for_each(|chunk| frames.chunk(chunk));
     ended.and(frames.report.sum_up())
 }
@@ -77,6 +82,7 @@ struct Frames<'a> {
     look: Option<Look>,
     report: WalkReport,
     progress: Watch,
+    showing: Showing<'a>,
     /// Remarks that were printed.
     said: BTreeSet<String>,
 }
@@ -135,6 +141,13 @@ impl Frames<'_> {
         let work = || walk.frame(&view, control);
         let is_done =
             |frame: &Result<RenderedFrame, FrameError>| frame.as_ref().is_ok_and(|frame| frame.complete);
+        let shown = ShownFrame {
+            size: [view.window.width, view.window.height],
+            look: self.look,
+            beside: job.files(number).0.with_extension("preview.png"),
+        };
+        let showing = &mut self.showing;
+        let work = || showing.frame(&shown, control, work);
         let frame = self.progress.frame(Some(number), control, work, is_done);
         let mut frame = frame.map_err(|error| match error {
             FrameError::Interrupted | FrameError::Unplanned => interrupted(number),
@@ -143,6 +156,7 @@ impl Frames<'_> {
         if !frame.complete {
             return Err(interrupted(number));
         }
+        self.showing.rendered(&frame.film.color);
         let is_black = frame.is_black();
         if is_there {
             self.report.repeat();

@@ -2,7 +2,8 @@
 
 use super::args::{StatsFormat, WalkArgs};
 use super::exit::Failure;
-use super::outputs::{check_new, check_outputs};
+use super::live::Previews;
+use super::outputs::{OutputCheck, check_new, check_outputs};
 use super::plan_args::PlanArgs;
 use super::values::{ProgressMode, Resolution};
 use super::{job_key, threads};
@@ -34,6 +35,10 @@ pub struct WalkJob {
     pub reproducible: bool,
     /// Exposure and view of the PNG files; `None` if there are none.
     pub tone: Option<Tone>,
+    /// Previews while it is rendered.
+    pub previews: Previews,
+    /// True if nothing is rendered or written.
+    pub dry_run: bool,
     /// Method and features.
     pub goal: Goal,
     /// Limits of the records that stay between frames.
@@ -72,6 +77,7 @@ impl WalkJob {
         let defaults = RetentionLimits::default();
         let bytes = args.memory_limit.map_or(defaults.bytes, |bytes| bytes.0);
         let no_overwrite = args.picture.no_overwrite;
+        let check = OutputCheck { may_stay: args.picture.resume, is_dry: args.picture.dry_run };
         let job = WalkJob {
             scene: args.scene,
             reading: args.picture.reading.options(),
@@ -80,6 +86,8 @@ impl WalkJob {
             resume: args.picture.resume,
             reproducible: args.picture.reproducible,
             tone: (!args.no_png).then_some(args.tone.tone()),
+            previews: Previews::new(args.picture.live, args.tone.tone(), check)?,
+            dry_run: args.picture.dry_run,
             goal,
             limits: RetentionLimits {
                 idle_frames: args.idle_frames,
@@ -98,7 +106,7 @@ impl WalkJob {
         // Without a list the first frame stands for all.
         for frame in listed.chain(job.frames.is_none().then_some(1)) {
             let (exr, png) = job.files(frame);
-            check_outputs(Some(&exr), png.as_deref(), job.resume)?;
+            check_outputs(Some(&exr), png.as_deref(), check)?;
             if no_overwrite {
                 check_new([&exr].into_iter().chain(&png).map(PathBuf::as_path))?;
             }
@@ -111,6 +119,11 @@ impl WalkJob {
         let exr = self.names.of(frame);
         let png = self.tone.map(|_| exr.with_extension("png"));
         (exr, png)
+    }
+
+    /// Returns the names of the frames' files for users.
+    pub fn name(&self) -> String {
+        self.names.pattern().display().to_string()
     }
 
     /// Returns the framing of a frame.

@@ -45,6 +45,8 @@ impl Default for DraftCamera {
 #[derive(Clone, Debug)]
 pub(crate) struct Shot {
     pub camera: DraftCamera,
+    /// Names of the cameras among which users may choose, in their order; empty names for cameras without one.
+    pub names: Vec<String>,
     /// True if the camera has to be moved until it sees all surfaces.
     pub fits: bool,
     pub path: Vec<DraftCamera>,

@@ -67,6 +67,10 @@ pub struct Loaded {
     pub scene: Scene,
     /// Cameras and film size that its file describes.
     pub cameras: Cameras,
+    /// Names of the cameras among which `--camera` chooses, in their order; empty names for cameras without one.
+    pub camera_names: Vec<String>,
+    /// Number of frames of the camera path or of the model's animation; 0 without both.
+    pub animation_frames: usize,
     /// Warnings about replacements, in the order of the description.
     pub warnings: Vec<Warning>,
     /// Report of repairs.
@@ -109,6 +113,8 @@ pub fn load(path: &Path, options: &LoadOptions) -> Result<Loaded, SceneError> {
     let up = options.up.or((extension == "stl").then_some(UpAxis::Z));
     options.lighting.apply(&mut plan.contents, up.unwrap_or(UpAxis::Y), is_model, path, &mut log)?;
     let posed_frames = plan.posed_frames.min(MAX_FRAMES);
+    let camera_names = plan.shot.names.clone();
+    let animation_frames = plan.animation_frames.min(MAX_FRAMES).max(plan.shot.path.len());
     let (mut draft, hash) = plan.realise(&mut log)?;
     // A mesh file is opened after its material libraries, and is the main file.
     let sources = &mut draft.scene.sources;
@@ -132,5 +138,6 @@ pub fn load(path: &Path, options: &LoadOptions) -> Result<Loaded, SceneError> {
         let fallback = "the image will be black; add light with --env sky, or a lamp to the scene";
         log.warn(&Location::file(path), "the scene has no light that is supported", fallback)?;
     }
-    Ok(Loaded { scene, cameras, warnings: log.into_warnings(), repairs, hash })
+    let warnings = log.into_warnings();
+    Ok(Loaded { scene, cameras, camera_names, animation_frames, warnings, repairs, hash })
 }

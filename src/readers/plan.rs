@@ -30,6 +30,8 @@ pub struct ScenePlan {
     pub hides_emitters: bool,
     /// Number of frames of the animation whose pose the plan has; 0 at rest.
     pub posed_frames: usize,
+    /// Number of frames of the model's animation; 0 without one.
+    pub animation_frames: usize,
     pub contents: Contents,
 }
 

@@ -68,6 +68,7 @@ fn scenes_are_asked_for_where_they_are_needed_and_nowhere_else() {
     assert!(sandbox.run(&["bench", "shadow"]).expect(2).stderr.contains("scene"));
     assert!(sandbox.run(&["bench", "bsdf", "room.xml"]).expect(2).stderr.contains("scene"));
     sandbox.run(&["bench", "luck"]).expect(2);
+    assert!(sandbox.run(&["bench"]).expect(0).stdout.contains("shadow SCENE"));
     sandbox.run(&["bench", "bsdf", "--repeats", "0"]).expect(2);
     sandbox.run(&["bench", "bsdf", "--export-csv", "missing/a.csv"]).expect(4);
     assert!(sandbox.run(&["bench", "--help"]).expect(0).stdout.contains("shadow SCENE"));

@@ -18,7 +18,7 @@ fn begun(sandbox: &Sandbox) -> Child {
 }
 
 /// Starts a render with any arguments; returns once its first pixels are done.
-fn begun_by(sandbox: &Sandbox, arguments: &[&str]) -> Child {
+pub(super) fn begun_by(sandbox: &Sandbox, arguments: &[&str]) -> Child {
     let mut child = sandbox
         .command(&[arguments, &["--progress", "ndjson"]].concat())
         .stderr(Stdio::piped())
@@ -35,7 +35,7 @@ fn begun_by(sandbox: &Sandbox, arguments: &[&str]) -> Child {
     child
 }
 
-fn signal(child: &Child, name: &str) {
+pub(super) fn signal(child: &Child, name: &str) {
     assert!(Command::new("kill").args([name, &child.id().to_string()]).status().unwrap().success());
 }
 

@@ -2,10 +2,13 @@
 
 mod batch;
 mod bench;
+mod blender;
 mod compare;
 mod denoise;
+mod dry_run;
 mod first_picture;
 mod interrupt;
+mod live;
 mod memory;
 mod merge;
 mod movie;
@@ -16,6 +19,9 @@ mod python;
 mod random_interrupts;
 mod sheet;
 mod slow_studies;
+#[cfg(target_os = "linux")]
+mod slurm;
+mod tev;
 mod usage;
 mod verify;
 mod walk;

@@ -232,4 +232,8 @@ fn info_tells_what_a_scene_holds_as_text_and_json() {
     let facts: serde_json::Value = serde_json::from_str(&json).unwrap();
     assert_eq!(facts["triangles"], 4);
     assert_eq!(facts["resolution"], serde_json::json!([96, 64]));
+    assert_eq!((&facts["materials"], &facts["cameras"]), (&2.into(), &serde_json::json!([""])));
+    assert_eq!(facts["lights"][0]["kind"], "area");
+    assert_eq!(facts["box"], serde_json::json!({ "min": [-3.0, 0.0, -3.0], "max": [3.0, 2.0, 3.0] }));
+    assert_eq!((&facts["frame_range"], &facts["not_supported"]), (&().into(), &serde_json::json!([])));
 }

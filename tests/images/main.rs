@@ -24,6 +24,7 @@ mod extremes;
 mod glass;
 mod glossy;
 mod lightcuts;
+mod live;
 mod many_lights;
 mod mitsuba;
 mod models;

@@ -62,8 +62,8 @@ impl<T> Image<T> {
     }
 }
 
-/// Bytes per pixel while an image is rendered with its variance and written.
-const PIXEL_BYTES: u64 = 72;
+/// Bytes per pixel while an image is rendered with its variance, watched, and written.
+const PIXEL_BYTES: u64 = 84;
 
 impl Image {
     /// Returns the approximate memory in bytes for rendering `window` and writing its files, with any method.

@@ -79,7 +79,8 @@ impl Viewer<'_> {
         let resolution = lens.resolution();
         let still = self.camera(&self.tree[at].to_file, &lens, resolution)?;
         let path = self.path(at, &lens, resolution, report)?;
-        Ok(Some(Shot { camera: still, fits: false, path, resolution, crop: None }))
+        let names = cameras.iter().map(|(at, _)| name(*at).to_owned()).collect();
+        Ok(Some(Shot { camera: still, names, fits: false, path, resolution, crop: None }))
     }
 
     /// Returns one camera per frame, if an animation moves the camera.

@@ -54,6 +54,8 @@ pub(crate) struct Imported {
     pub shot: Option<Shot>,
     /// Number of frames of the first animation, if the options ask for one; else 0.
     pub frames: usize,
+    /// Number of frames of the first animation, as far as it can be read.
+    pub animation_frames: usize,
     /// Files read, with the hash of the bytes of each.
     pub sources: Vec<(PathBuf, u64)>,
 }
@@ -68,7 +70,8 @@ pub(super) fn read(path: &Path, options: &LoadOptions, log: &mut Log) -> Result<
         let forward = -framing::outlook(DVec3::Y);
         let right = right_of(forward, DVec3::Y).unwrap_or(DVec3::X);
         let camera = DraftCamera { forward, right, up: right.cross(forward), ..DraftCamera::default() };
-        Shot { camera, fits: true, path: Vec::new(), resolution: DEFAULT_RESOLUTION, crop: None }
+        let (names, path) = (Vec::new(), Vec::new());
+        Shot { camera, names, fits: true, path, resolution: DEFAULT_RESOLUTION, crop: None }
     });
     Ok(ScenePlan {
         name: stem_of(path),
@@ -77,6 +80,7 @@ pub(super) fn read(path: &Path, options: &LoadOptions, log: &mut Log) -> Result<
         max_depth: None,
         hides_emitters: false,
         posed_frames: imported.frames,
+        animation_frames: imported.animation_frames,
         contents,
     })
 }
@@ -94,8 +98,12 @@ pub fn import(
         let what = format!("time is {time}, and {} has no animation", path.display());
         return Err(from.wrong(what, "leave time out"));
     }
+    let animation = pose::span(&document);
+    let count = |[start, end]: [f64; 2]| ((end - start) * options.fps).round() as usize + 1;
+    // An animation that is not asked for may be damaged.
+    let animation_frames = animation.as_ref().ok().copied().flatten().map_or(0, count);
     let span = match options.frame {
-        Some(_) => pose::span(&document)?,
+        Some(_) => animation?,
         None => None,
     };
     let of_frame = |frame: usize| span.map(|[start, _]| start + frame.saturating_sub(1) as f64 / options.fps);
@@ -131,8 +139,8 @@ pub fn import(
         Viewer { document: &document, tree: &tree, to_world: options.to_world, fps: options.fps, is_posed };
     let shot = viewer.shot(options.camera.as_deref(), &mut report)?;
     report.write(&document.place, log)?;
-    let frames = span.map_or(0, |[start, end]| ((end - start) * options.fps).round() as usize + 1);
-    Ok(Imported { shot, frames, sources: document.sources })
+    let frames = span.map_or(0, count);
+    Ok(Imported { shot, frames, animation_frames, sources: document.sources })
 }
 
 #[cfg(test)]

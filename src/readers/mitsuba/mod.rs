@@ -64,7 +64,16 @@ pub(super) fn read(path: &Path, options: &LoadOptions, log: &mut Log) -> Result<
     let name = if stem == "scene" { folder_name.unwrap_or(stem) } else { stem };
     let sources = document.sources.iter().cloned().chain(read).collect();
     let IntegratorSettings { max_depth, hides_emitters } = integrator;
-    Ok(ScenePlan { name, sources, shot, max_depth, hides_emitters, posed_frames: 0, contents })
+    Ok(ScenePlan {
+        name,
+        sources,
+        shot,
+        max_depth,
+        hides_emitters,
+        posed_frames: 0,
+        animation_frames: 0,
+        contents,
+    })
 }
 
 #[cfg(test)]

@@ -70,7 +70,8 @@ impl Converter<'_> {
         let camera = self.camera(&sensor.place, &to_world, projection)?;
         let camera = DraftCamera { tan_half_x, near, far, filter, ..camera };
         sensor.report_unused(self.log)?;
-        Ok(Shot { camera, fits: false, path: Vec::new(), resolution, crop })
+        let names = sensors.iter().map(|sensor| sensor.id.clone().unwrap_or_default()).collect();
+        Ok(Shot { camera, names, fits: false, path: Vec::new(), resolution, crop })
     }
 
     /// Names what a sampler says besides noise. `--spp` gives the number of samples.

@@ -30,7 +30,10 @@ impl SceneBuilder<'_> {
         self.check_filter(text)?;
         let path = text.path.as_ref().map(|walk| self.path(text, walk, resolution)).transpose()?;
         let path = path.unwrap_or_default();
-        let shot = |camera, fits, path| Ok(Shot { camera, fits, path, resolution, crop: None });
+        let shot = |camera, fits, path| {
+            let names = if fits { Vec::new() } else { vec![String::new()] };
+            Ok(Shot { camera, names, fits, path, resolution, crop: None })
+        };
         match (text.origin, text.target, path.first()) {
             (Some(origin), Some(target), _) => {
                 let still = KeyText { frame: None, origin, target, up: None, fov: None };

@@ -70,6 +70,7 @@ pub(super) fn read(path: &Path, log: &mut Log) -> Result<ScenePlan, SceneError> 
         max_depth,
         hides_emitters: scene.hide_emitters.unwrap_or(false),
         posed_frames: 0,
+        animation_frames: 0,
         contents: builder.contents,
     })
 }

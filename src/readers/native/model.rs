@@ -52,6 +52,7 @@ pub(crate) fn read(path: &Path, extension: &str, log: &mut Log) -> Result<SceneP
         max_depth: None,
         hides_emitters: false,
         posed_frames: 0,
+        animation_frames: 0,
         contents: builder.contents,
     })
 }

@@ -80,7 +80,7 @@ impl Session {
     /// If the scene cannot be read, or its acceleration structure cannot be built.
     pub fn open(path: &Path, options: &LoadOptions) -> Result<Opened, OpenError> {
         let mut stats = Stats::new();
-        let Loaded { scene, cameras, warnings, repairs, hash } =
+        let Loaded { scene, cameras, warnings, repairs, hash, .. } =
             stats.time(Stage::Load, || load(path, options))?;
         let session = Session::build(scene, cameras, stats)
             .map_err(|source| OpenError::Build { path: path.to_owned(), source })?;

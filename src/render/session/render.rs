@@ -41,6 +41,21 @@ impl Session {
         self.frame_from(view, goal, Former::Samples(partial), control)
     }
 
+    /// Returns the approximate memory in bytes that an image takes beside the scene.
+    ///
+    /// # Errors
+    /// If memory is too small.
+    pub fn expected_memory(&self, view: &View, goal: &Goal) -> Result<u64, FrameError> {
+        let needed = goal.method.expected_bytes(&view.window);
+        match available_bytes().filter(|available| needed > *available) {
+            Some(available) => {
+                let [needed, available] = [needed, available].map(|bytes| bytes as f64 / f64::from(1 << 30));
+                Err(FrameError::Memory { needed, available })
+            }
+            None => Ok(needed),
+        }
+    }
+
     /// Renders a frame that builds on `former` renders, if no settings are planned.
     pub(crate) fn frame_from(
         &self,
@@ -49,7 +64,7 @@ impl Session {
         former: Former,
         control: &Control,
     ) -> Result<RenderedFrame, FrameError> {
-        check_memory(goal, view)?;
+        self.expected_memory(view, goal)?;
         let watch = Stopwatch::start();
         let mut notes = Notes::default();
         let (world, lights) = (&self.world, &self.lights);
@@ -141,18 +156,6 @@ fn measure(
     let settings = goal.verify?.of(method);
     let result = stats.time(Stage::Verify, || verify(world, view, image, &settings, control));
     Some(Measurement { settings, result })
-}
-
-/// Rejects frames that need more memory than there is.
-fn check_memory(goal: &Goal, view: &View) -> Result<(), FrameError> {
-    let needed = goal.method.expected_bytes(&view.window);
-    match available_bytes().filter(|available| needed > *available) {
-        Some(available) => {
-            let [needed, available] = [needed, available].map(|bytes| bytes as f64 / f64::from(1 << 30));
-            Err(FrameError::Memory { needed, available })
-        }
-        None => Ok(()),
-    }
 }
 
 /// Warns of numbers that were not finite.

@@ -1,4 +1,6 @@
 //! Lists of frames: `7`, `1-10`, `1-100x5` (every fifth), `1,5,9-12`. Frames count from 1.
+//!
+//! The forms of other programs mean the same: `1..10`, `1:10`, and `1-100:5` or `1:100:5` for a step.
 
 use scene::MAX_FRAMES;
 use std::str::FromStr;
@@ -47,14 +49,15 @@ impl FromStr for FrameList {
     }
 }
 
-/// Parses first frame, last frame and step of `A`, `A-B` or `A-BxS`.
+/// Parses first frame, last frame and step of `A`, `A-B` or `A-BxS`. `..` or `:` may stand for `-`, and `:` for `x`.
 fn range(text: &str) -> Option<(usize, usize, usize)> {
     let number = |text: &str| text.trim().parse::<usize>().ok();
-    let Some((first, rest)) = text.split_once('-') else {
+    let between = ["..", "-", ":"].into_iter().find_map(|between| text.split_once(between));
+    let Some((first, rest)) = between else {
         let only = number(text)?;
         return Some((only, only, 1));
     };
-    let (last, step) = match rest.split_once(['x', 'X']) {
+    let (last, step) = match rest.split_once(['x', 'X', ':']) {
         Some((last, step)) => (last, number(step)?),
         None => (rest, 1),
     };
@@ -73,13 +76,35 @@ mod tests {
         assert_eq!(list("1-100x30"), [1, 31, 61, 91]);
         assert_eq!(list("9-12, 1,5,10"), [1, 5, 9, 10, 11, 12]);
         assert_eq!(list(" 3 - 5 X 2 "), [3, 5]);
+        for same in ["10..20", "10:20", "10-20", "10 .. 20", "10-20:1", "10:20:1", "10..20x1"] {
+            assert_eq!(list(same), list("10-20x1"), "{same}");
+        }
+        for same in ["1-20:2", "1:20:2", "1..20:2", "1..20x2"] {
+            assert_eq!(list(same), list("1-20x2"), "{same}");
+        }
         assert_eq!("2-6x3".parse::<FrameList>().unwrap().last(), 5);
     }
 
     #[test]
     fn anything_else_is_refused_with_the_part_that_is_wrong() {
         let error = |text: &str| text.parse::<FrameList>().unwrap_err();
-        for bad in ["", "a", "1-", "-3", "1,,2", "1-5x", "1-2-3", "1.5", "99999999999999999999999"] {
+        for bad in [
+            "",
+            "a",
+            "1-",
+            "-3",
+            "1,,2",
+            "1-5x",
+            "1-2-3",
+            "1.5",
+            "1..",
+            "..4",
+            "1...4",
+            "1:",
+            "1-5:",
+            "1:2:3:4",
+            "99999999999999999999999",
+        ] {
             assert!(error(bad).contains("1-100x5"), "{bad}");
         }
         assert!(error("0-4").contains("count from 1"));

@@ -23,6 +23,12 @@ impl FileNames {
         let FileNames { folder, before, digits, after } = self;
         folder.join(format!("{before}{frame:0digits$}{after}"))
     }
+
+    /// Returns the name for all frames, with a `#` per digit.
+    pub fn pattern(&self) -> PathBuf {
+        let FileNames { folder, before, digits, after } = self;
+        folder.join(format!("{before}{}{after}", "#".repeat(*digits)))
+    }
 }
 
 impl FileNames {

@@ -46,11 +46,15 @@ impl<'w> EyePass<'w> {
         let effort = tracer.effort(learned);
         tracer.light_samples.count = effort.as_ref().map_or(1, |effort| effort.light_samples);
         let works = Workspaces::new(|| tracer.workspace_with_guides(learned));
+        let live = control.live([view.window.width, view.window.height]);
         let first = |index| {
             if control.is_cancelled() {
                 return None;
             }
             let found = works.with(|work| tracer.first_samples(index, work));
+            if let Some(live) = &live {
+                live.set(found.light(view.window.width));
+            }
             control.advance(1);
             Some(found)
         };

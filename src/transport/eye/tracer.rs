@@ -85,6 +85,15 @@ pub(super) struct SampledTile<'w> {
     pub(super) nonfinite: u64,
 }
 
+impl SampledTile<'_> {
+    /// Returns the light found so far, by index in the rows of a window of this width.
+    pub(super) fn light(&self, width: u32) -> impl Iterator<Item = (usize, Rgb)> {
+        let indices = self.pixels.iter().map(move |[x, y]| (y * width + x) as usize);
+        let means = self.sums.iter().zip(&self.samples).map(|(sum, samples)| *sum / *samples as f32);
+        indices.zip(means)
+    }
+}
+
 impl<'a, 'w> Tracer<'a, 'w> {
     /// Creates a tracer whose scattered edges are guided as a pilot finds best; adds the pilot's rays to `counts`.
     pub(super) fn new(

@@ -8,7 +8,7 @@ use base::progress::Control;
 use rayon::prelude::*;
 
 /// Radiance of the points of a patch.
-type ShadedPatch = Vec<(ShadingTask, Rgb)>;
+pub type ShadedPatch = Vec<(ShadingTask, Rgb)>;
 
 /// Radiance of shading points.
 #[derive(Default)]
@@ -19,13 +19,15 @@ pub struct Shading {
     pub counts: ShadingCounts,
 }
 
-/// Shades patches of tasks; skips the remaining ones if `control` is cancelled.
+/// Shades patches of tasks; skips the remaining ones if `control` is cancelled. Calls `show` with every patch that is
+/// done.
 pub fn shade<'w>(
     context: &ShadingContext<'w>,
     points: &ShadingPoints<'w>,
     patches: &[Vec<ShadingTask>],
     settings: &ShadeSettings,
     control: &Control,
+    show: impl Fn(&ShadedPatch) + Sync,
 ) -> Shading {
     let shaders = Workspaces::new(|| Shader::new(context, settings));
     let shade = |patch: &Vec<ShadingTask>| {
@@ -36,6 +38,7 @@ pub fn shade<'w>(
         shaders.with(|shader| {
             shader.begin_chunk();
             shader.shade(points, patch, |task, shaded| radiance.push((task, shaded.radiance)));
+            show(&radiance);
             control.advance(patch.len() as u64);
             (radiance, shader.take_counts())
         })

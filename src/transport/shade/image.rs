@@ -1,6 +1,6 @@
 //! Image under construction, and optionally its parts by the origin of light.
 
-use super::{ShadeSettings, ShadingContext, ShadingCounts, ShadingTask, patches, shade};
+use super::{ShadeSettings, ShadedPatch, ShadingContext, ShadingCounts, ShadingTask, patches, shade};
 use crate::eye::EyePass;
 use crate::lights::Origin;
 use base::film::{Image, Layer, Preview};
@@ -50,7 +50,7 @@ impl ShadedImage {
     }
 
     /// Shades `tasks` in patches and adds their light. There are about `count` patches if there is a task for each
-    /// point.
+    /// point. Watchers see the image, and then the light of each patch.
     pub fn shade<'w>(
         &mut self,
         context: &ShadingContext<'w>,
@@ -61,7 +61,18 @@ impl ShadedImage {
         control: &Control,
     ) -> ShadingCounts {
         let patches = patches(&eye.points, tasks, count, context.world.diagonal);
-        let shading = shade(context, &eye.points, &patches, settings, control);
+        let live = control.live([self.color.width, self.color.height]);
+        if let Some(live) = &live {
+            live.show(&self.color);
+        }
+        let show = |patch: &ShadedPatch| {
+            if let Some(live) = &live {
+                live.add(
+                    patch.iter().flat_map(|(task, radiance)| seen_by(eye, task.point as usize, *radiance)),
+                );
+            }
+        };
+        let shading = shade(context, &eye.points, &patches, settings, control, show);
         for &(task, radiance) in shading.patches.iter().flatten() {
             self.add(eye, task.point as usize, task.origin, radiance);
         }
@@ -81,4 +92,11 @@ impl ShadedImage {
         let parts = parts.map(|(name, image)| Layer::color(name, image).shown(Preview::Exposed));
         (self.color, parts.collect(), self.nonfinite)
     }
+}
+
+/// Returns the light that a shading point sends to pixels, by their indices. Light that is not finite is left out.
+fn seen_by(eye: &EyePass, point: usize, radiance: Rgb) -> impl Iterator<Item = (usize, Rgb)> {
+    let light =
+        eye.visibility.of(point).iter().map(move |seen| (seen.pixel as usize, seen.weight * radiance));
+    light.filter(|(_, light)| light.is_finite())
 }

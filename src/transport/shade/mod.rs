@@ -15,7 +15,7 @@ mod patches;
 mod shader;
 
 pub use context::{ShadeSettings, ShadingContext, ShadingTask};
-pub use frame::shade;
+pub use frame::{ShadedPatch, shade};
 pub use gatherers::{Gatherers, Shaded};
 pub use image::ShadedImage;
 pub use patches::patches;

@@ -32,7 +32,7 @@ fn draft(meshes: Vec<DraftMesh>, materials: Vec<Material>) -> Draft {
     };
     Draft {
         scene: Scene { name: "t".into(), sources: vec!["t.toml".into()], materials, ..Scene::default() },
-        shot: Shot { camera, fits: false, path: vec![], resolution: [1, 1], crop: None },
+        shot: Shot { camera, names: vec![], fits: false, path: vec![], resolution: [1, 1], crop: None },
         meshes,
         lights: vec![],
         material_places: vec![],

@@ -108,12 +108,16 @@ impl Settings {
         control.begin(Stage::Render, corners.len() as u64);
         let settings =
             ShadeSettings { cut: self.cut, share: self.share, samples: None, shadows: self.shadows };
+        let live = control.live([tiles.window.width, tiles.window.height]);
         let workspaces = Workspaces::new(|| (Shader::new(context, &settings), VisibleSurfaces::default()));
         let shade = |&corner: &[u32; 2]| {
             if control.is_cancelled() {
                 return None;
             }
             let tile = workspaces.with(|(shader, seen)| tiles.shade(corner, shader, seen))?;
+            if let Some(live) = &live {
+                live.set(tile.pixels.iter().map(|&(at, radiance, _)| (at, radiance)));
+            }
             control.advance(1);
             Some(tile)
         };

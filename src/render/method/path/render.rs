@@ -152,6 +152,15 @@ impl Settings {
 fn render_tiles(tiles: &mut [PathTile], inputs: &TileInputs, control: &Control) {
     let passes = inputs.spp.div_ceil(PASS);
     control.begin(Stage::Render, passes as u64 * tiles.len() as u64);
+    let window = &inputs.view.window;
+    let live = control.live([window.width, window.height]);
+    let show = |i: usize, tile: &PathTile| {
+        if let Some(live) = &live {
+            let indices = window.tile(i, TILE).map(|[x, y]| (y * window.width + x) as usize);
+            live.set(indices.zip(tile.pixels.iter().map(|pixel| pixel.mean)));
+        }
+    };
+    tiles.iter().enumerate().for_each(|(i, tile)| show(i, tile));
     let batches = Workspaces::new(Batch::default);
     for pass in 0..passes {
         if control.is_cancelled() {
@@ -161,6 +170,7 @@ fn render_tiles(tiles: &mut [PathTile], inputs: &TileInputs, control: &Control) 
         tiles.par_iter_mut().one_by_one().enumerate().for_each(|(i, tile)| {
             if !control.is_cancelled() {
                 batches.with(|batch| tile.render(inputs, i, end, batch));
+                show(i, tile);
                 control.advance(1);
             }
         });
