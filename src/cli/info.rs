@@ -73,9 +73,8 @@ fn to_text(facts: &Value, repairs: &SanitizeReport) -> String {
         "material names",
         counted(list(&facts["material_names"]).iter().filter_map(Value::as_str).map(str::to_owned)),
     );
-    if let [low, high] = [&facts["box"]["min"], &facts["box"]["max"]]
-        && !low.is_null()
-    {
+    let [low, high] = ["min", "max"].map(|corner| &facts["box"][corner]);
+    if !low.is_null() {
         line("box in units of the file", format!("{low} to {high}"));
     }
     for (key, value) in facts.as_object().into_iter().flatten() {

@@ -65,7 +65,7 @@ pub fn still(job: &RenderJob, opened: &Opened, span: RunSpan, control: &Control)
         begun
     });
     let progress = Watch::new(job.progress, RunProgress::new(1, Stages::of(&job.goal), span));
-    let mut showing = job.previews.begin(&job.files.names().concat());
+    let mut showing = job.previews.begin(&job.files.names().swap_remove(0));
     let work = Work { begun, progress, showing: &mut showing };
     let mut frame = render(job, opened, work, control)?;
     let files = job.files.of_image(frame.complete);

@@ -1,8 +1,8 @@
 //! The commands of `docs/blender.md`, on a file as Blender exports it: no light, and no camera unless it is ticked.
 
 use super::Sandbox;
+use image::Rgb;
 use image::codecs::hdr::HdrEncoder;
-use image::{ExtendedColorType, ImageEncoder, Rgb, Rgb32FImage};
 use serde_json::{Value, json};
 use std::fs;
 
@@ -140,10 +140,9 @@ fn small<'a>(arguments: &[&'a str]) -> Vec<&'a str> {
 #[test]
 fn the_commands_of_the_page_work_on_files_as_blender_exports_them() {
     let sandbox = Sandbox::new();
-    let sky = Rgb32FImage::from_fn(8, 4, |_, y| Rgb([1.0, 1.0, 4.0 - y as f32]));
-    let pixels: Vec<u8> = sky.as_raw().iter().flat_map(|value| value.to_ne_bytes()).collect();
+    let sky: Vec<Rgb<f32>> = (0..32u8).map(|i| Rgb([1.0, 1.0, 4.0 - f32::from(i / 8)])).collect();
     let hdr = fs::File::create(sandbox.path("studio.hdr")).unwrap();
-    HdrEncoder::new(hdr).write_image(&pixels, 8, 4, ExtendedColorType::Rgb32F).unwrap();
+    HdrEncoder::new(hdr).encode(&sky, 8, 4).unwrap();
     let commands = commands();
     let mut verbs = Vec::new();
     for command in &commands {

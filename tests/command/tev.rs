@@ -119,7 +119,7 @@ fn viewer<R: Send + 'static>(serve: impl FnOnce(TcpStream) -> R + Send + 'static
 
 /// Renders the room to `a.exr`, large enough that no buffer of a connection holds it.
 fn render(sandbox: &Sandbox, more: &[&str]) -> Finished {
-    let large = ["--resolution", "1200x800", "--spp", "1", "--no-png", "--reproducible"];
+    let large = ["--resolution", "800x600", "--spp", "1", "--no-png", "--reproducible"];
     sandbox.run(&[&["render", "room.xml", "-o", "a.exr", "--method", "path"], &large[..], more].concat())
 }
 
@@ -129,7 +129,7 @@ fn the_viewer_gets_the_image_by_the_documented_packets() {
     let (option, viewed) = viewer(view);
     let stderr = render(&sandbox, &[&option]).expect(0).stderr;
     let viewed = viewed.join().unwrap();
-    assert_eq!((&*viewed.name, viewed.size), ("a.exr", [1200, 800]), "{stderr}");
+    assert_eq!((&*viewed.name, viewed.size), ("a.exr", [800, 600]), "{stderr}");
     assert!(viewed.updates > 1, "an image of this size takes several packets");
     let image = read_exr(&sandbox.path("a.exr")).unwrap();
     for (channel, values) in viewed.channels.iter().enumerate() {

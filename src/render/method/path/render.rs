@@ -160,7 +160,8 @@ fn render_tiles(tiles: &mut [PathTile], inputs: &TileInputs, control: &Control) 
             live.set(indices.zip(tile.pixels.iter().map(|pixel| pixel.mean)));
         }
     };
-    tiles.iter().enumerate().for_each(|(i, tile)| show(i, tile));
+    // Samples of an interrupted run are there from the start.
+    tiles.iter().enumerate().filter(|(_, tile)| tile.samples > 0).for_each(|(i, tile)| show(i, tile));
     let batches = Workspaces::new(Batch::default);
     for pass in 0..passes {
         if control.is_cancelled() {
