@@ -255,7 +255,7 @@ pub struct BatchArgs {
     /// Print the number, scene and output of each entry, and render nothing
     #[arg(long, conflicts_with = "only")]
     pub list: bool,
-    /// Print the files that would be written, the resolution, the method and the memory of each entry, and write nothing
+    /// Print files, resolution, method and memory of each entry, and write nothing
     #[arg(long)]
     pub dry_run: bool,
     /// Render only these entries, counted from 1 over all job files: 7, 1-10, or a list of ranges

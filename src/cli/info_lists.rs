@@ -21,7 +21,8 @@ pub fn cameras(names: &Value) -> String {
 
 /// Returns all lights: kind, name and size of emitting meshes, and positions in units of the file.
 pub fn lights(scene: &Scene) -> Vec<Value> {
-    let position = |local: Vec3| rounded(in_file(scene, local));
+    let largest = corners(scene).map(|corner| in_file(scene, corner).abs().max_element()).fold(0.0, f64::max);
+    let position = |local: Vec3| rounded(in_file(scene, local), largest);
     let delta = |light: &DeltaLight| match light {
         DeltaLight::Point { position: at, .. } => json!({ "kind": "point", "position": position(*at) }),
         DeltaLight::Spot { position: at, .. } => json!({ "kind": "spot", "position": position(*at) }),
@@ -29,7 +30,7 @@ pub fn lights(scene: &Scene) -> Vec<Value> {
             json!({ "kind": "projector", "position": position(*at) })
         }
         DeltaLight::Directional { direction, .. } => {
-            json!({ "kind": "directional", "direction": rounded(direction.as_dvec3()) })
+            json!({ "kind": "directional", "direction": rounded(direction.as_dvec3(), 1.0) })
         }
     };
     let emitters = scene.meshes.iter().filter(|mesh| mesh.emission.is_some());
@@ -38,7 +39,7 @@ pub fn lights(scene: &Scene) -> Vec<Value> {
     let disc = scene.discs.iter().map(|disc| {
         json!({
             "kind": "distant disc",
-            "direction": rounded(disc.direction.as_dvec3()),
+            "direction": rounded(disc.direction.as_dvec3(), 1.0),
             "half_angle_degrees": disc.half_angle.to_degrees(),
         })
     });
@@ -51,12 +52,11 @@ pub fn lights(scene: &Scene) -> Vec<Value> {
 
 /// Returns the box around all triangles in units of the file; null without any.
 pub fn bounds(scene: &Scene) -> Value {
-    let corners = scene.meshes.iter().flat_map(|mesh| {
-        mesh.triangles.iter().flatten().filter_map(|i| mesh.positions.get(*i as usize).copied())
-    });
-    match corners.map(|corner| (corner, corner)).reduce(|(a, b), (c, d)| (a.min(c), b.max(d))) {
+    match corners(scene).map(|corner| (corner, corner)).reduce(|(a, b), (c, d)| (a.min(c), b.max(d))) {
         Some((low, high)) => {
-            let [low, high] = [low, high].map(|corner| rounded(in_file(scene, corner)));
+            let corners = [low, high].map(|corner| in_file(scene, corner));
+            let largest = corners.map(|corner| corner.abs().max_element()).into_iter().fold(0.0, f64::max);
+            let [low, high] = corners.map(|corner| rounded(corner, largest));
             json!({ "min": low, "max": high })
         }
         None => Value::Null,
@@ -84,9 +84,15 @@ fn in_file(scene: &Scene, local: Vec3) -> DVec3 {
     scene.centre + local.as_dvec3() * scene.unit()
 }
 
-/// Returns the coordinates with the digits that they have: positions are 32-bit.
-fn rounded(position: DVec3) -> [f64; 3] {
-    let scale = 10f64.powi(6 - position.abs().max_element().max(1e-30).log10().ceil() as i32);
+fn corners(scene: &Scene) -> impl Iterator<Item = Vec3> {
+    scene.meshes.iter().flat_map(|mesh| {
+        mesh.triangles.iter().flatten().filter_map(|i| mesh.positions.get(*i as usize).copied())
+    })
+}
+
+/// Returns coordinates with six digits of the `largest` one: positions are 32-bit.
+fn rounded(position: DVec3, largest: f64) -> [f64; 3] {
+    let scale = 10f64.powi(6 - largest.max(1e-30).log10().ceil() as i32);
     let round = |x: f64| if scale.is_finite() && scale > 0.0 { (x * scale).round() / scale + 0.0 } else { x };
     position.to_array().map(round)
 }
