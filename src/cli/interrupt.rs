@@ -18,7 +18,7 @@ use std::sync::{Arc, OnceLock};
 /// True while a scene is being read.
 static IS_OPENING: AtomicBool = AtomicBool::new(false);
 
-/// True while SIGUSR1 asks for a preview.
+/// True if SIGUSR1 asks for a preview, until the request is taken.
 static WANTS_PREVIEW: OnceLock<Arc<AtomicBool>> = OnceLock::new();
 
 /// Resets [`IS_OPENING`] when it is dropped, after a panic, too.
@@ -37,16 +37,9 @@ pub fn while_opening<R>(work: impl FnOnce() -> R) -> R {
     work()
 }
 
-/// Returns true if a signal asks for a preview that is not there yet.
-pub fn wants_preview() -> bool {
-    WANTS_PREVIEW.get().is_some_and(|wants| wants.load(Ordering::SeqCst))
-}
-
-/// Ends the request for a preview.
-pub fn preview_is_there() {
-    if let Some(wants) = WANTS_PREVIEW.get() {
-        wants.store(false, Ordering::SeqCst);
-    }
+/// Returns true if a signal has asked for a preview since the last call.
+pub fn takes_request_for_preview() -> bool {
+    WANTS_PREVIEW.get().is_some_and(|wants| wants.swap(false, Ordering::SeqCst))
 }
 
 /// Cancels `control` when a signal to end arrives, and takes requests for previews. Call it once per process.

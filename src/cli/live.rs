@@ -56,7 +56,14 @@ impl Previews {
     pub fn begin(&self, name: &str) -> Showing<'_> {
         let threads = u32::try_from(rayon::current_num_threads()).unwrap_or(u32::MAX);
         let tev = self.tev.clone().map(|address| Tev::start(address, name.to_owned(), threads));
-        Showing { previews: self, tev, threads, due: Instant::now() + self.every, has_warned: false }
+        Showing {
+            previews: self,
+            tev,
+            threads,
+            due: Instant::now() + self.every,
+            is_asked: false,
+            has_warned: false,
+        }
     }
 }
 
@@ -67,6 +74,8 @@ pub struct Showing<'a> {
     threads: u32,
     /// Time of the next preview.
     due: Instant,
+    /// True while a signal asks for a preview, and there is no image yet.
+    is_asked: bool,
     has_warned: bool,
 }
 
@@ -97,9 +106,11 @@ impl Showing<'_> {
     fn write_previews(&mut self, live: &LiveImage, frame: &ShownFrame, stop: Receiver<()>) {
         let mut shown = 0;
         while goes_on(&stop, TICK) {
-            let (is_asked, changes) = (interrupt::wants_preview(), live.changes());
+            // A request that comes while a preview is written asks for the next one.
+            self.is_asked |= interrupt::takes_request_for_preview();
+            let changes = live.changes();
             let is_due = self.previews.file.is_some() && Instant::now() >= self.due && changes != shown;
-            if !is_asked && !is_due {
+            if !self.is_asked && !is_due {
                 continue;
             }
             let begun = Instant::now();
@@ -108,12 +119,10 @@ impl Showing<'_> {
             let look = frame.look.unwrap_or_else(|| self.previews.tone.look(&copy.known));
             let file = self.previews.file().unwrap_or(&frame.beside);
             let written = write_png(file, &copy.image, look);
-            if is_asked {
-                interrupt::preview_is_there();
-                if written.is_ok() {
-                    talk::note(&format!("wrote {} (preview)", file.display()));
-                }
+            if self.is_asked && written.is_ok() {
+                talk::note(&format!("wrote {} (preview)", file.display()));
             }
+            self.is_asked = false;
             self.report(written);
             shown = changes;
             self.due = begun + self.previews.every.max(spacing(begun.elapsed(), self.threads));
