@@ -14,12 +14,12 @@ pub struct LiveArgs {
     /// SIGUSR1 writes it at once
     #[arg(long, value_name = "FILE.png")]
     pub preview: Option<PathBuf>,
-    /// Interval between previews (10s, 2m) [default: 10s]; longer if they would take more than 1 % of the processors'
-    /// time
+    /// Interval between previews, like 10s or 2m. Previews never take more than 1 % of the processors' time [default:
+    /// 10s]
     #[arg(long, value_name = "TIME", value_parser = parse_time, requires = "preview", hide_short_help = true)]
     pub every: Option<f64>,
-    /// Send what is rendered so far to the viewer tev [default address: 127.0.0.1:14158]. An absent or slow viewer does
-    /// not delay the render
+    /// Send what is rendered so far to the viewer tev. An absent or slow viewer does not delay the render [default
+    /// address: 127.0.0.1:14158]
     #[arg(
         long,
         value_name = "HOST:PORT",
