@@ -58,7 +58,9 @@ impl Cli {
             true => arg,
             false => arg.allow_negative_numbers(true),
         };
-        Cli::command().mut_subcommands(|command| shortened(command.mut_args(negative)))
+        // Help names environment variables, and does not depend on their values.
+        let parsed = |arg: Arg| negative(arg.hide_env_values(true));
+        Cli::command().mut_subcommands(|command| shortened(command.mut_args(parsed)))
     }
 }
 

@@ -10,13 +10,13 @@ const TEV: &str = "127.0.0.1:14158";
 /// Options of what an image shows while it is rendered.
 #[derive(Clone, Debug, Default, Args)]
 pub struct LiveArgs {
-    /// Write what is rendered so far to this PNG file, at intervals, with exposure and view of the final PNG file.
-    /// SIGUSR1 writes it at once
+    /// Write what is rendered so far to a PNG file, at intervals. Exposure and view equal the final PNG file. SIGUSR1
+    /// writes a preview at once
     #[arg(long, value_name = "FILE.png")]
     pub preview: Option<PathBuf>,
     /// Interval between previews, like 10s or 2m. Previews never take more than 1 % of the processors' time [default:
     /// 10s]
-    #[arg(long, value_name = "TIME", value_parser = parse_time, requires = "preview", hide_short_help = true)]
+    #[arg(long, value_name = "TIME", value_parser = parse_time, requires = "preview")]
     pub every: Option<f64>,
     /// Send what is rendered so far to the viewer tev. An absent or slow viewer does not delay the render [default
     /// address: 127.0.0.1:14158]
@@ -26,8 +26,7 @@ pub struct LiveArgs {
         num_args = 0..=1,
         require_equals = true,
         default_missing_value = TEV,
-        value_parser = parse_address,
-        hide_short_help = true
+        value_parser = parse_address
     )]
     pub tev: Option<String>,
 }

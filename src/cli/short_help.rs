@@ -3,7 +3,7 @@
 use clap::{Arg, Command};
 
 /// Options that only `--help` shows, by the names of their fields. Settings of the methods say so themselves.
-const RARE: [&str; 16] = [
+const RARE: [&str; 19] = [
     "format",
     "inspect",
     "no_overwrite",
@@ -20,6 +20,9 @@ const RARE: [&str; 16] = [
     "memory_limit",
     "no_reprojection",
     "q_scale",
+    "every",
+    "tev",
+    "dry_run",
 ];
 
 /// Leaves rare options of a command out of `-h`, which then counts them and names the help that has them. The other
