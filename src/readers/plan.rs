@@ -91,8 +91,13 @@ impl Contents {
 
     /// Adds the texture that is the attribute `name` of meshes, times an image if there is one.
     pub fn add_attribute(&mut self, name: &str, image: Option<TextureId>) -> TextureId {
+        self.add_cut_attribute(name, image, None)
+    }
+
+    /// Adds a texture as [`Contents::add_attribute`], which is 1 from the value `cut` on, and 0 below it.
+    pub fn add_cut_attribute(&mut self, name: &str, image: Option<TextureId>, cut: Option<f32>) -> TextureId {
         let number = index_of(&mut self.attribute_names, name.to_owned());
-        let texture = AttributeTexture { attribute: AttributeId(number as u32), image };
+        let texture = AttributeTexture { attribute: AttributeId(number as u32), image, cut };
         TextureId::of_attribute(index_of(&mut self.attribute_textures, texture))
     }
 

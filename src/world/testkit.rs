@@ -154,7 +154,7 @@ pub fn add_attribute_texture(
     image: Option<TextureId>,
 ) -> TextureId {
     let mut attributes = scene.textures.attributes().to_vec();
-    attributes.push(AttributeTexture { attribute, image });
+    attributes.push(AttributeTexture { attribute, image, cut: None });
     let texture = TextureId::of_attribute(attributes.len() - 1);
     scene.textures = scene.textures.clone().with_attributes(attributes);
     texture

@@ -296,9 +296,14 @@ impl Importer<'_> {
         let opacity = match (&source.alpha_mode, texture) {
             (Checked::Valid(AlphaMode::Mask), _) => {
                 let cutoff = source.alpha_cutoff.as_ref().map_or(0.5, |cutoff| cutoff.0);
-                if colours == VertexColours::WithAlpha {
-                    let what = "opacities of vertices that a mask cuts are not supported";
-                    self.report.lacks(what, "they are 1", name);
+                if colours == VertexColours::WithAlpha && cutoff > 0.0 && factor > 0.0 {
+                    let image = match texture {
+                        Some(info) => self.texture(&TextureUse::of(info), ALPHA, name)?,
+                        None => None,
+                    };
+                    let cut = Some(cutoff / factor);
+                    let texture = self.contents.add_cut_attribute(VERTEX_ALPHA, image, cut);
+                    return Ok(Some(Share::Textured { texture, scale: 1.0 }));
                 }
                 // A point is opaque if its alpha times the factor reaches the cutoff.
                 match texture {

@@ -7,12 +7,14 @@ use crate::attribute::AttributeId;
 const FIRST: u32 = 1 << 31;
 
 /// Texture that is an attribute of the mesh, or the product of an attribute and an image.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AttributeTexture {
     /// The attribute.
     pub attribute: AttributeId,
     /// The image.
     pub image: Option<TextureId>,
+    /// Value from which on the texture is 1, and below which it is 0. Masks alone have one.
+    pub cut: Option<f32>,
 }
 
 impl TextureId {

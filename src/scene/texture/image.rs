@@ -173,7 +173,7 @@ fn neighbours(position: f32) -> ([i64; 2], f32) {
 
 /// Returns 1 where a value reaches `from`, up to rounding, else 0.
 #[inline]
-fn cut(value: Rgb, from: f32) -> Rgb {
+pub(super) fn cut(value: Rgb, from: f32) -> Rgb {
     Rgb::select(value.cmpge(Rgb::splat(from * (1.0 - CUT_SLACK))), Rgb::ONE, Rgb::ZERO)
 }
 

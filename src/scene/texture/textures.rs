@@ -1,7 +1,7 @@
 //! The textures of a scene, shared by all that look them up.
 
 use super::attribute::AttributeTexture;
-use super::image::{Texture, TextureId};
+use super::image::{Texture, TextureId, cut};
 use crate::attribute::AttributeId;
 use base::math::Rgb;
 use glam::Vec2;
@@ -66,7 +66,8 @@ impl Textures {
     ) -> Rgb {
         let Some(texture) = self.attribute(id) else { return Rgb::ONE };
         let image = texture.image.and_then(|image| self.by_id(image));
-        image.map_or(Rgb::ONE, |image| image.lookup(uv)) * attribute(texture.attribute)
+        let value = image.map_or(Rgb::ONE, |image| image.lookup(uv)) * attribute(texture.attribute);
+        texture.cut.map_or(value, |from| cut(value, from))
     }
 }
 

@@ -171,7 +171,7 @@ impl AreaLight {
 
 /// Returns the mean of a texture on a mesh, and the maximum of each channel. Those of a product are products.
 fn mean_and_greatest(scene: &Scene, mesh: &Mesh, texture: TextureId) -> (Rgb, Rgb) {
-    let Some(AttributeTexture { attribute, image }) = scene.textures.attribute(texture) else {
+    let Some(AttributeTexture { attribute, image, .. }) = scene.textures.attribute(texture) else {
         return of_texels(scene, texture);
     };
     let (mean, greatest) = image.map_or((Rgb::ONE, Rgb::ONE), |image| of_texels(scene, image));

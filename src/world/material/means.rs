@@ -12,11 +12,11 @@ pub(super) struct TextureMeans {
 }
 
 impl TextureMeans {
-    /// Computes the mean of each texture. That of a product is the product of the means.
+    /// Computes the mean of each texture. That of a product is the product of the means, as if nothing cut it.
     pub fn new(scene: &Scene) -> TextureMeans {
         let textures = &scene.textures;
         let images: Vec<Rgb> = textures.par_iter().map(Texture::mean).collect();
-        let of_attribute = |AttributeTexture { attribute, image }: &AttributeTexture| {
+        let of_attribute = |AttributeTexture { attribute, image, .. }: &AttributeTexture| {
             let of_image = image.and_then(|id| images.get(id.0 as usize)).copied();
             scene.attribute_mean(*attribute) * of_image.unwrap_or(Rgb::ONE)
         };

@@ -102,6 +102,42 @@ fn blended_materials_are_as_opaque_as_texture_and_vertices_say() {
 }
 
 #[test]
+fn masks_cut_the_product_of_factor_texture_and_vertices() {
+    let mut model = Model::new();
+    let texture = model.texture([[255, 255, 255, 128]; 4], json!({}));
+    let base = json!({ "baseColorTexture": { "index": texture }, "baseColorFactor": [1, 1, 1, 0.5] });
+    model.push(
+        "materials",
+        json!({ "name": "m", "alphaMode": "MASK", "alphaCutoff": 0.1, "pbrMetallicRoughness": base }),
+    );
+    let mesh = model.square(Some(0));
+    let colours = model.floats(&COLOURS);
+    model.json["meshes"][mesh]["primitives"][0]["attributes"]["COLOR_0"] = json!(colours);
+    model.node(json!({ "mesh": mesh }));
+    let loaded = load_bytes("m.glb", &model.glb()).unwrap();
+    assert!(loaded.warnings.iter().all(|w| w.severity == crate::Severity::Note), "{:?}", loaded.warnings);
+    let Some(Parameter::Textured { texture, scale }) = material(&loaded, "m").opacity else { panic!() };
+    let of = |alpha: f32| {
+        let found = loaded.scene.textures.lookup(texture, glam::Vec2::splat(0.5), |_| Rgb::splat(alpha));
+        (found * scale).x
+    };
+    // 0.5 by the factor and 128 / 255 by the image: 0.1 is reached from an alpha of 0.3984 on.
+    assert_eq!([1.0, 0.6, 0.4, 0.39, 0.2, 0.0].map(of), [1.0, 1.0, 1.0, 0.0, 0.0, 0.0]);
+    let found = values(&loaded.scene, &loaded.scene.meshes[0], texture);
+    assert!(found.iter().zip(COLOURS).all(|(found, [.., alpha])| *found == Rgb::splat(alpha)), "{found:?}");
+    // Without an image, and with a factor that no vertex can lift to the cutoff.
+    for (factor, expected) in [(0.5, [1.0, 0.0]), (0.0, [0.0, 0.0])] {
+        model.json["materials"][0]["pbrMetallicRoughness"] = json!({ "baseColorFactor": [1, 1, 1, factor] });
+        let loaded = load_bytes("m.glb", &model.glb()).unwrap();
+        let opacity = material(&loaded, "m").opacity.expect("a mask");
+        let textures = &loaded.scene.textures;
+        let of =
+            |alpha: f32| opacity.value(|id| textures.lookup(id, glam::Vec2::ZERO, |_| Rgb::splat(alpha)).x);
+        assert_eq!([0.25, 0.15].map(of), expected, "{factor}");
+    }
+}
+
+#[test]
 fn unlit_materials_shine_in_the_colours_of_their_vertices() {
     let source = json!({
         "name": "m", "extensions": { "KHR_materials_unlit": {} },
