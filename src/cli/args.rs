@@ -199,7 +199,8 @@ impl PictureArgs {
 #[derive(Debug, Args)]
 #[command(after_long_help = exit::HELP)]
 pub struct WalkArgs {
-    /// Scene with a camera path: lightsplat TOML (.toml), or glTF (.glb, .gltf) with an animated camera
+    /// Scene with a camera path: lightsplat TOML (.toml), or glTF (.glb, .gltf) with an animation. Each frame shows the
+    /// model in its pose of the first animation, at 24 frames per second
     pub scene: PathBuf,
     /// Images to write. `####` or `%04d` stands for the number of the frame: f.####.exr or f.%04d.exr
     #[arg(short, long, value_name = "NAME.####.exr")]

@@ -5,6 +5,7 @@
 
 use super::args::{Cli, Command};
 use super::exit::Failure;
+use super::walk_job::FIRST_POSE;
 use anyhow::{Context, anyhow};
 use clap::error::{ContextKind, ContextValue};
 use readers::{EnvironmentChoice, LoadOptions, read_regular};
@@ -180,7 +181,7 @@ impl JobEntry {
             Command::Render(args) => {
                 LoadOptions { frame: args.frame.map(NonZeroUsize::get), ..args.picture.reading.options() }
             }
-            Command::Walk(args) => args.picture.reading.options(),
+            Command::Walk(args) => LoadOptions { frame: FIRST_POSE, ..args.picture.reading.options() },
             _ => LoadOptions::default(),
         };
         Ok(self)

@@ -4,16 +4,29 @@ use super::exit::Failure;
 use super::{interrupt, talk};
 use readers::{LoadOptions, Loaded, SanitizeReport, SceneError, Severity, Warning, load};
 use render::session::{OpenError, Opened, Session};
+use render::walk::posed::cameras_in;
 use std::path::Path;
 
 /// Opens a session on the scene at `path`, and prints the warnings.
 pub fn open(path: &Path, options: &LoadOptions) -> Result<Opened, Failure> {
-    let opened = interrupt::while_opening(|| Session::open(path, options)).map_err(|error| match error {
-        OpenError::Scene(error) => unreadable(error),
-        OpenError::Build { .. } => Failure::render(error),
-    })?;
+    let opened = interrupt::while_opening(|| Session::open(path, options)).map_err(unopened)?;
     report(path, &opened.warnings, &opened.repairs);
     Ok(opened)
+}
+
+/// Opens a session on another frame of the model that moves in `first`, whose cameras see it. Prints warnings that
+/// `first` lacks.
+pub fn posed(path: &Path, options: &LoadOptions, first: &Opened) -> Result<Session, Failure> {
+    let opened = Session::open(path, options).map_err(unopened)?;
+    let is_known = |warning: &Warning| {
+        let mut known = first.warnings.iter();
+        known.any(|other| (&other.what, &other.fallback) == (&warning.what, &warning.fallback))
+    };
+    let new: Vec<Warning> = opened.warnings.into_iter().filter(|warning| !is_known(warning)).collect();
+    report(path, &new, &SanitizeReport::default());
+    let mut session = opened.session;
+    session.cameras = cameras_in(&session.world.scene, &first.session.cameras, &first.session.world.scene);
+    Ok(session)
 }
 
 /// Reads the scene at `path` without preparing it for rendering, and prints the warnings.
@@ -21,6 +34,14 @@ pub fn read(path: &Path, options: &LoadOptions) -> Result<Loaded, Failure> {
     let loaded = load(path, options).map_err(unreadable)?;
     report(path, &loaded.warnings, &loaded.repairs);
     Ok(loaded)
+}
+
+/// Returns the failure of a session that cannot be opened.
+fn unopened(error: OpenError) -> Failure {
+    match error {
+        OpenError::Scene(error) => unreadable(error),
+        OpenError::Build { .. } => Failure::render(error),
+    }
 }
 
 /// Returns the failure of a scene that cannot be read.

@@ -6,13 +6,14 @@ use super::exit::Failure;
 use super::live::{Showing, ShownFrame};
 use super::outputs::{self, Inputs};
 use super::progress::Watch;
-use super::walk_job::{PlannedChunk, WalkJob};
+use super::walk_job::{FIRST_POSE, PlannedChunk, WalkJob};
 use super::walk_report::WalkReport;
 use super::{dry_run, interrupt, opened, picture, talk, threads};
 use anyhow::{Context, anyhow};
 use base::film::{Exposure, Film, Image, Look};
 use base::progress::Control;
 use base::stats::{Stage, Stopwatch};
+use readers::LoadOptions;
 use render::session::{BLACK, FrameError, Opened, Remark, RenderedFrame, Session};
 use render::walk::saved::{self, Pace};
 use render::walk::{Walk, exposure};
@@ -42,8 +43,8 @@ pub fn run(args: WalkArgs) -> Result<(), Failure> {
 /// # Errors
 /// If a frame cannot be rendered or written, or a signal interrupted the run.
 pub fn walk(job: &WalkJob, opened: &Opened, span: RunSpan, control: &Control) -> Result<(), Failure> {
-    let Opened { session, warnings, .. } = opened;
-    let chunks = job.plan(session)?;
+    let Opened { session, warnings, moves, .. } = opened;
+    let chunks = job.plan(session, *moves)?;
     let inputs = Inputs::of(session);
     for number in chunks.iter().flat_map(|chunk| &chunk.frames) {
         let (exr, png) = job.files(*number);
@@ -57,6 +58,9 @@ pub fn walk(job: &WalkJob, opened: &Opened, span: RunSpan, control: &Control) ->
     if job.dry_run {
         return dry_run::walk(job, session, &chunks);
     }
+    if *moves {
+        talk::note("the model moves: each frame is rendered without records of the frames before it");
+    }
     let mut report = WalkReport::new(job.stats);
     for number in chunks.iter().flat_map(PlannedChunk::untouched) {
         report.skip();
@@ -67,13 +71,17 @@ pub fn walk(job: &WalkJob, opened: &Opened, span: RunSpan, control: &Control) ->
     let (warnings, said) = (warnings.len(), BTreeSet::new());
     let showing = job.previews.begin(&job.name());
     let mut frames = Frames { job, session, warnings, control, look: None, report, progress, showing, said };
-    let ended = chunks.into_iter().try_for_each(|chunk| frames.chunk(chunk));
+    let ended = chunks.into_iter().try_for_each(|chunk| match moves {
+        true => frames.posed(chunk, opened),
+        false => frames.chunk(chunk, session),
+    });
     ended.and(frames.report.sum_up())
 }
 
 /// A running walk.
 struct Frames<'a> {
     job: &'a WalkJob,
+    /// Scene of the exposure: of all frames, or of the first one if the model moves.
     session: &'a Session,
     /// Number of warnings of the reader.
     warnings: usize,
@@ -88,9 +96,22 @@ struct Frames<'a> {
 }
 
 impl Frames<'_> {
+    /// Renders a chunk of one frame of the model that moves in `first`, the scene of the first frame.
+    fn posed(&mut self, chunk: PlannedChunk, first: &Opened) -> Result<(), Failure> {
+        let Some(number) = chunk.unwritten().next().filter(|number| Some(*number) != FIRST_POSE) else {
+            return self.chunk(chunk, &first.session);
+        };
+        if self.control.is_cancelled() {
+            return Err(interrupted(number));
+        }
+        let reading = LoadOptions { frame: Some(number), ..self.job.reading.clone() };
+        let session = opened::posed(&self.job.scene, &reading, first)?;
+        self.chunk(chunk, &session)
+    }
+
     /// Renders the missing frames of a chunk, and those frames whose records they need.
-    fn chunk(&mut self, mut chunk: PlannedChunk) -> Result<(), Failure> {
-        let Frames { job, session, .. } = *self;
+    fn chunk(&mut self, mut chunk: PlannedChunk, session: &Session) -> Result<(), Failure> {
+        let job = self.job;
         let records = job.records_file(&chunk);
         let saved = chunk.saved.take();
         let behind = saved.as_ref().map_or(0, |(index, _)| index + 1);
@@ -98,7 +119,7 @@ impl Frames<'_> {
             saved.and_then(|(_, bytes)| Walk::restored(session, job.goal.clone(), job.limits, &bytes));
         if restored.is_none() && behind > 0 {
             // Another build of this version wrote the records. The chunk starts without them.
-            return self.chunk(chunk.without_saved());
+            return self.chunk(chunk.without_saved(), session);
         }
         let mut pace = Pace::default();
         for run in &chunk.runs {
@@ -106,7 +127,7 @@ impl Frames<'_> {
                 .take_if(|_| run.from_saved)
                 .unwrap_or_else(|| Walk::new(session, job.goal.clone(), job.limits));
             for index in run.frames.clone() {
-                self.frame(&mut walk, &chunk, index)?;
+                self.frame(&mut walk, session, &chunk, index)?;
                 let Some(path) = records.as_ref().filter(|_| index >= behind && !chunk.is_last(index)) else {
                     continue;
                 };
@@ -125,8 +146,14 @@ impl Frames<'_> {
     }
 
     /// Renders a frame of a chunk, and writes it unless it exists.
-    fn frame(&mut self, walk: &mut Walk, chunk: &PlannedChunk, index: usize) -> Result<(), Failure> {
-        let Frames { job, session, control, .. } = *self;
+    fn frame(
+        &mut self,
+        walk: &mut Walk,
+        session: &Session,
+        chunk: &PlannedChunk,
+        index: usize,
+    ) -> Result<(), Failure> {
+        let Frames { job, control, .. } = *self;
         let (number, is_there) = (chunk.frames[index], chunk.done[index]);
         if control.is_cancelled() {
             return Err(interrupted(number));

@@ -18,6 +18,9 @@ use std::num::NonZeroUsize;
 use std::path::PathBuf;
 use world::view::Framing;
 
+/// Frame whose pose a model takes when the scene of a walk is read.
+pub const FIRST_POSE: Option<usize> = Some(1);
+
 /// A validated walk: scene, method, frames and their files.
 #[derive(Debug)]
 pub struct WalkJob {
@@ -80,7 +83,7 @@ impl WalkJob {
         let check = OutputCheck { may_stay: args.picture.resume, is_dry: args.picture.dry_run };
         let job = WalkJob {
             scene: args.scene,
-            reading: args.picture.reading.options(),
+            reading: LoadOptions { frame: FIRST_POSE, ..args.picture.reading.options() },
             frames: args.frames,
             chunk: args.chunk,
             resume: args.picture.resume,
@@ -147,7 +150,7 @@ impl WalkJob {
         if frames == 0 {
             return Err(Failure::usage(anyhow!(
                 "{scene} has no camera path; add a table [camera.path] to a TOML scene, as in \
-                 scenes/apartment.toml, or an animated camera to a glTF file; for a still, use `lightsplat render`"
+                 scenes/apartment.toml, or an animation to a glTF file; for a still, use `lightsplat render`"
             )));
         }
         let Some(list) = &self.frames else { return Ok((1..=frames).collect()) };
@@ -159,11 +162,11 @@ impl WalkJob {
         }
     }
 
-    /// Divides the frames into chunks, and decides which frames to render.
+    /// Divides the frames into chunks, and decides which frames to render. If the model moves, each frame is a chunk.
     ///
     /// # Errors
     /// If the scene has no camera path, or a frame lies beyond it.
-    pub fn plan(&self, session: &Session) -> Result<Vec<PlannedChunk>, Failure> {
+    pub fn plan(&self, session: &Session, moves: bool) -> Result<Vec<PlannedChunk>, Failure> {
         let numbers = self.numbers(session)?;
         let key = job_key::of(
             session,
@@ -176,7 +179,8 @@ impl WalkJob {
             ]),
         );
         // Without records, frames do not depend on each other.
-        let size = if self.goal.method.as_walks().is_some() { self.chunk } else { NonZeroUsize::new(1) };
+        let has_records = self.goal.method.as_walks().is_some() && !moves;
+        let size = if has_records { self.chunk } else { NonZeroUsize::new(1) };
         let chunks = chunk::chunks(&numbers, size, session.cameras.path.len());
         Ok(chunks.into_iter().map(|chunk| self.planned(chunk, &key)).collect())
     }

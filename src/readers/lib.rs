@@ -48,6 +48,7 @@ mod viewpoint;
 
 use error::Log;
 use finish::{divide, recentre, sanitize, wanted};
+use plan::Motion;
 use scene::{Cameras, MAX_FRAMES, Scene};
 use std::path::Path;
 
@@ -77,6 +78,8 @@ pub struct Loaded {
     pub repairs: SanitizeReport,
     /// Hash over the bytes of all source files in order, and over the options (64-bit FNV-1a).
     pub hash: u64,
+    /// True if the options ask for a frame of a model whose meshes or lights move.
+    pub moves: bool,
 }
 
 /// Reads the scene at `path`: `.toml` is native, `.xml` Mitsuba's, `.glb` and `.gltf` glTF. `.obj`, `.ply` and `.stl`
@@ -112,9 +115,10 @@ pub fn load(path: &Path, options: &LoadOptions) -> Result<Loaded, SceneError> {
     // Models for printing and from computer-aided design stand on z.
     let up = options.up.or((extension == "stl").then_some(UpAxis::Z));
     options.lighting.apply(&mut plan.contents, up.unwrap_or(UpAxis::Y), is_model, path, &mut log)?;
-    let posed_frames = plan.posed_frames.min(MAX_FRAMES);
+    let Motion { frames, animation_frames, moves } = plan.motion;
+    let posed_frames = frames.min(MAX_FRAMES);
     let camera_names = plan.shot.names.clone();
-    let animation_frames = plan.animation_frames.min(MAX_FRAMES).max(plan.shot.path.len());
+    let animation_frames = animation_frames.min(MAX_FRAMES).max(plan.shot.path.len());
     let (mut draft, hash) = plan.realise(&mut log)?;
     // A mesh file is opened after its material libraries, and is the main file.
     let sources = &mut draft.scene.sources;
@@ -130,14 +134,15 @@ pub fn load(path: &Path, options: &LoadOptions) -> Result<Loaded, SceneError> {
     let (repairs, coordinates) = sanitize::sanitize(&mut draft, &mut log)?;
     divide::divide(&mut draft, &coordinates);
     let (scene, mut cameras) = recentre::recentre(draft, &coordinates);
-    if cameras.path.is_empty() {
-        // The camera stands still while the model moves.
-        cameras.path = vec![cameras.still; posed_frames];
+    // The camera stands still while the model moves on behind its path.
+    if cameras.path.is_empty() || moves && cameras.path.len() < posed_frames {
+        let last = cameras.path.last().copied().unwrap_or(cameras.still);
+        cameras.path.resize(posed_frames, last);
     }
     if scene.is_dark() {
         let fallback = "the image will be black; add light with --env sky, or a lamp to the scene";
         log.warn(&Location::file(path), "the scene has no light that is supported", fallback)?;
     }
     let warnings = log.into_warnings();
-    Ok(Loaded { scene, cameras, camera_names, animation_frames, warnings, repairs, hash })
+    Ok(Loaded { scene, cameras, camera_names, animation_frames, warnings, repairs, hash, moves })
 }

@@ -28,11 +28,19 @@ pub struct ScenePlan {
     pub shot: Shot,
     pub max_depth: Option<u32>,
     pub hides_emitters: bool,
-    /// Number of frames of the animation whose pose the plan has; 0 at rest.
-    pub posed_frames: usize,
-    /// Number of frames of the model's animation; 0 without one.
-    pub animation_frames: usize,
+    pub motion: Motion,
     pub contents: Contents,
+}
+
+/// Animation of a model, and the part of it in a plan. The default is a plan without an animation.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Motion {
+    /// Number of frames of the animation, if the plan has the pose of one of them; 0 at rest.
+    pub frames: usize,
+    /// Number of frames of the animation, as far as it can be read; 0 without one.
+    pub animation_frames: usize,
+    /// True if the animation moves meshes or lights.
+    pub moves: bool,
 }
 
 /// Content of a description without the cameras.

@@ -42,7 +42,7 @@ pub enum FramingError {
     /// The camera path is shorter than the frame's number.
     #[error("frame {frame}: {}", match frames {
         0 => "the scene has no camera path, only a still camera; give a TOML scene keys in [camera.path], or a glTF \
-              model an animated camera".to_owned(),
+              model an animation".to_owned(),
         _ => format!("the scene's camera path has {frames} frames, counted from 1"),
     })]
     Frame {

@@ -14,6 +14,7 @@ mod merge;
 mod movie;
 mod output;
 mod plan;
+mod posed_walk;
 mod python;
 #[cfg(target_os = "linux")]
 mod random_interrupts;

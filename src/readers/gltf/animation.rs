@@ -31,6 +31,13 @@ impl Track {
         self.property != Property::MorphTargetWeights
     }
 
+    /// True if the keys have different values.
+    pub fn varies(&self) -> bool {
+        let mut values = self.values.chunks_exact(self.width.max(1));
+        let first = values.next();
+        values.any(|value| Some(value) != first)
+    }
+
     /// Sets the property to its value at `time`.
     pub fn apply(&self, local: &mut Local, time: f64) {
         let Local::Steps { scale, rotation, translation } = local else { return };

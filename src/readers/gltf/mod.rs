@@ -35,7 +35,7 @@ use crate::error::{Location, Log, SceneError};
 use crate::file::stem_of;
 use crate::finish::framing;
 use crate::options::LoadOptions;
-use crate::plan::{Contents, ScenePlan};
+use crate::plan::{Contents, Motion, ScenePlan};
 use base::math::right_of;
 use camera::Viewer;
 use document::GltfFile;
@@ -52,10 +52,8 @@ pub(crate) use importer::ImportOptions;
 /// Content of a model that is not part of the plan's contents.
 pub(crate) struct Imported {
     pub shot: Option<Shot>,
-    /// Number of frames of the first animation, if the options ask for one; else 0.
-    pub frames: usize,
-    /// Number of frames of the first animation, as far as it can be read.
-    pub animation_frames: usize,
+    /// Motion by the first animation.
+    pub motion: Motion,
     /// Files read, with the hash of the bytes of each.
     pub sources: Vec<(PathBuf, u64)>,
 }
@@ -79,8 +77,7 @@ pub(super) fn read(path: &Path, options: &LoadOptions, log: &mut Log) -> Result<
         shot,
         max_depth: None,
         hides_emitters: false,
-        posed_frames: imported.frames,
-        animation_frames: imported.animation_frames,
+        motion: imported.motion,
         contents,
     })
 }
@@ -140,7 +137,8 @@ pub fn import(
     let shot = viewer.shot(options.camera.as_deref(), &mut report)?;
     report.write(&document.place, log)?;
     let frames = span.map_or(0, count);
-    Ok(Imported { shot, frames, animation_frames, sources: document.sources })
+    let motion = Motion { frames, animation_frames, moves: frames > 0 && pose.moves(&document, &tree) };
+    Ok(Imported { shot, motion, sources: document.sources })
 }
 
 #[cfg(test)]

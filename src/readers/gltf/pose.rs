@@ -2,10 +2,12 @@
 
 use super::animation::{self, Track};
 use super::document::GltfFile;
-use super::nodes::Local;
+use super::nodes::{Local, Placed};
 use crate::error::SceneError;
 use gltf_json::Node;
 use gltf_json::mesh::Mesh;
+use std::collections::BTreeSet;
+use std::iter::successors;
 
 /// Pose of a model. The default is its pose at rest.
 #[derive(Default)]
@@ -37,6 +39,23 @@ impl Pose {
     pub fn weights(&self, index: usize, node: &Node, mesh: &Mesh) -> Vec<f32> {
         let animated = self.of(index).find_map(|track| track.weights(self.time));
         animated.or_else(|| node.weights.clone()).or_else(|| mesh.weights.clone()).unwrap_or_default()
+    }
+
+    /// Returns true if the animation moves a mesh or a light of the tree, or changes the weights of a mesh.
+    pub fn moves(&self, document: &GltfFile, tree: &[Placed]) -> bool {
+        let joints: BTreeSet<usize> =
+            document.root.skins.iter().flat_map(|skin| &skin.joints).map(|joint| joint.value()).collect();
+        let is_moved = |at: usize| {
+            let mut chain = successors(Some(at), |&at| tree[at].parent);
+            chain.any(|at| self.of(tree[at].node).any(|track| track.moves() && track.varies()))
+        };
+        tree.iter().enumerate().any(|(at, placed)| {
+            let node = &document.root.nodes[placed.node];
+            let mut weights = self.of(placed.node).filter(|track| !track.moves() && track.varies());
+            let is_light = node.extensions.as_ref().is_some_and(|e| e.khr_lights_punctual.is_some());
+            let is_placed = node.mesh.is_some() || is_light || joints.contains(&placed.node);
+            node.mesh.is_some() && weights.next().is_some() || is_placed && is_moved(at)
+        })
     }
 
     fn of(&self, index: usize) -> impl Iterator<Item = &Track> {

@@ -28,7 +28,7 @@ mod value;
 use crate::error::{Log, SceneError};
 use crate::file::{folder_of, stem_of};
 use crate::options::LoadOptions;
-use crate::plan::{Contents, ScenePlan};
+use crate::plan::{Contents, Motion, ScenePlan};
 use converter::Converter;
 use integrator::IntegratorSettings;
 use std::path::Path;
@@ -64,16 +64,7 @@ pub(super) fn read(path: &Path, options: &LoadOptions, log: &mut Log) -> Result<
     let name = if stem == "scene" { folder_name.unwrap_or(stem) } else { stem };
     let sources = document.sources.iter().cloned().chain(read).collect();
     let IntegratorSettings { max_depth, hides_emitters } = integrator;
-    Ok(ScenePlan {
-        name,
-        sources,
-        shot,
-        max_depth,
-        hides_emitters,
-        posed_frames: 0,
-        animation_frames: 0,
-        contents,
-    })
+    Ok(ScenePlan { name, sources, shot, max_depth, hides_emitters, motion: Motion::default(), contents })
 }
 
 #[cfg(test)]

@@ -20,7 +20,7 @@ mod text;
 
 use crate::error::{Location, Log, SceneError};
 use crate::file::{read_text, stem_of};
-use crate::plan::ScenePlan;
+use crate::plan::{Motion, ScenePlan};
 use builder::SceneBuilder;
 use scene::MaterialId;
 use source::SourceText;
@@ -69,8 +69,7 @@ pub(super) fn read(path: &Path, log: &mut Log) -> Result<ScenePlan, SceneError> 
         shot,
         max_depth,
         hides_emitters: scene.hide_emitters.unwrap_or(false),
-        posed_frames: 0,
-        animation_frames: 0,
+        motion: Motion::default(),
         contents: builder.contents,
     })
 }

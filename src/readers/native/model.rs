@@ -7,7 +7,7 @@ use crate::error::{Location, Log, SceneError};
 use crate::file::{read_file, stem_of};
 use crate::mesh::ply;
 use crate::mesh::{Normals, Placement};
-use crate::plan::{MaterialPlan, MeshPlan, MeshSource, ScenePlan};
+use crate::plan::{MaterialPlan, MeshPlan, MeshSource, Motion, ScenePlan};
 use crate::selection::PartSelection;
 use glam::DMat4;
 use std::path::Path;
@@ -51,8 +51,7 @@ pub(crate) fn read(path: &Path, extension: &str, log: &mut Log) -> Result<SceneP
         sources: builder.sources,
         max_depth: None,
         hides_emitters: false,
-        posed_frames: 0,
-        animation_frames: 0,
+        motion: Motion::default(),
         contents: builder.contents,
     })
 }

@@ -55,6 +55,8 @@ pub struct Opened {
     pub warnings: Vec<Warning>,
     /// Report of repairs.
     pub repairs: SanitizeReport,
+    /// True if the options ask for a frame of a model whose meshes or lights move.
+    pub moves: bool,
 }
 
 /// Reason why a session cannot be opened.
@@ -80,11 +82,11 @@ impl Session {
     /// If the scene cannot be read, or its acceleration structure cannot be built.
     pub fn open(path: &Path, options: &LoadOptions) -> Result<Opened, OpenError> {
         let mut stats = Stats::new();
-        let Loaded { scene, cameras, warnings, repairs, hash, .. } =
+        let Loaded { scene, cameras, warnings, repairs, hash, moves, .. } =
             stats.time(Stage::Load, || load(path, options))?;
         let session = Session::build(scene, cameras, stats)
             .map_err(|source| OpenError::Build { path: path.to_owned(), source })?;
-        Ok(Opened { session: Session { hash, ..session }, warnings, repairs })
+        Ok(Opened { session: Session { hash, ..session }, warnings, repairs, moves })
     }
 
     /// Prepares a scene made in memory for rendering, on the threads of the current pool.

@@ -17,11 +17,13 @@
 //! [`transport::perception`]).
 //!
 //! [`frames`] lists frames, [`names`] names their files, [`exposure`] computes one exposure for a whole path.
+//! [`posed`] has the cameras of models that move, whose frames share nothing else.
 
 pub mod chunk;
 pub mod exposure;
 pub mod frames;
 pub mod names;
+pub mod posed;
 pub mod saved;
 
 use crate::method::RetainedRecords;

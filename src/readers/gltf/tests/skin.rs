@@ -1,7 +1,7 @@
 //! Tests of skins and morph targets.
 
 use super::model::Model;
-use super::samples::{arm, face};
+use super::samples::{all, arm, face};
 use super::{bounds, load_beside, load_bytes};
 use crate::{LoadOptions, Loaded, load};
 use glam::Vec3;
@@ -163,7 +163,33 @@ fn frames_of_an_animation_are_poses_of_models_without_a_scene_file() {
     let fallbacks =
         |loaded: &Loaded| loaded.warnings.iter().any(|warning| warning.fallback.contains("--frame"));
     assert!(fallbacks(&rest) && !fallbacks(&seventh));
+    assert!(first.moves && seventh.moves && !rest.moves);
     // A model without an animation has no frames.
     std::fs::write(&path, arm().glb()).unwrap();
     assert!(at(Some(7)).cameras.path.is_empty() && at(Some(7)).hash == at(None).hash);
+}
+
+#[test]
+fn a_model_moves_if_a_mesh_a_light_or_a_joint_does() {
+    let moves = |mut model: Model, node: usize, last: [f32; 3]| {
+        let (times, places) = (model.floats(&[[0.0], [1.0]]), model.floats(&[[5.0, 0.0, 0.0], last]));
+        model.json["animations"] = json!([{
+            "samplers": [{ "input": times, "output": places }],
+            "channels": [{ "sampler": 0, "target": { "node": node, "path": "translation" } }],
+        }]);
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("m.glb");
+        std::fs::write(&path, model.glb()).unwrap();
+        let loaded = load(&path, &LoadOptions { frame: Some(3), ..LoadOptions::default() }).unwrap();
+        assert_eq!(loaded.cameras.path.len(), 25);
+        loaded.moves
+    };
+    let sample = |name: &str| all().into_iter().find(|(own, ..)| *own == name).unwrap().1;
+    let away = [6.0, 0.0, 0.0];
+    assert!(moves(arm(), 0, away) && moves(arm(), 1, away) && !moves(arm(), 1, [5.0, 0.0, 0.0]));
+    assert!(moves(sample("lights"), 1, away));
+    assert!(moves(sample("instances"), 0, away) && moves(sample("instances"), 2, away));
+    // A camera and the node that carries it, and a square beside them.
+    assert!(!moves(sample("camera"), 0, away) && !moves(sample("camera"), 1, away));
+    assert!(moves(sample("camera"), 2, away));
 }
