@@ -15,6 +15,7 @@ mod attributes;
 mod budget;
 mod built_in;
 mod check;
+mod colour_profile;
 mod constants;
 mod decode;
 mod draft;

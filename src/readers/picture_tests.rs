@@ -21,6 +21,8 @@ const PICTURES: &[Statement] = &[
     new("PNG of grey", Fate::Read, "one value for three colours"),
     new("PNG with a palette", Fate::Read, "by its colours"),
     new("JPEG", Fate::Read, "sRGB unless raw"),
+    new("JPEG of CMYK", Fate::Read, "with a marker of Adobe, each ink times the black, without a profile"),
+    new("WebP", Fate::Read, "sRGB unless raw; alpha is dropped"),
     new("BMP", Fate::Read, "sRGB unless raw"),
     new("TGA", Fate::Read, "sRGB unless raw; by its extension, since it has no signature"),
     new("Radiance HDR", Fate::Read, "linear; with either signature"),
@@ -84,6 +86,41 @@ fn palette() -> Vec<u8> {
     png
 }
 
+/// A JPEG of 8 x 8 pixels of cyan, magenta, yellow and black, as programs of Adobe write it.
+fn cmyk(inks: [u8; 4]) -> Vec<u8> {
+    let mut jpeg = vec![0xFF, 0xD8];
+    let mut segment = |marker: u8, data: &[u8]| {
+        jpeg.extend([&[0xFF, marker][..], &(data.len() as u16 + 2).to_be_bytes(), data].concat());
+    };
+    // Without a transform of colours.
+    segment(0xEE, &[&b"Adobe\0\x64"[..], &[0; 5]].concat());
+    // A step of 8 for all coefficients: the first one is then the value.
+    segment(0xDB, &[&[0u8][..], &[8; 64]].concat());
+    let components: Vec<u8> = (1..5).flat_map(|id| [id, 0x11, 0]).collect();
+    segment(0xC0, &[&[8, 0, 8, 0, 8, 4][..], &components].concat());
+    // Nine lengths of values have codes of four bits. A code of one bit ends a block.
+    segment(0xC4, &[&[0, 0, 0, 0, 9][..], &[0; 12], &[0, 1, 2, 3, 4, 5, 6, 7, 8]].concat());
+    segment(0xC4, &[&[0x10, 1][..], &[0; 15], &[0]].concat());
+    segment(0xDA, &[&[4, 1, 0, 2, 0, 3, 0, 4, 0][..], &[0, 63, 0]].concat());
+    let mut bits = String::new();
+    for ink in inks {
+        let value = i32::from(ink) - 128;
+        let length = (i32::BITS - value.abs().leading_zeros()) as usize;
+        let code = if value < 0 { value + (1 << length) - 1 } else { value };
+        let code = if length > 0 { format!("{code:0length$b}") } else { String::new() };
+        bits += &format!("{length:04b}{code}0");
+    }
+    bits += &"1".repeat(bits.len().next_multiple_of(8) - bits.len());
+    for byte in bits.as_bytes().chunks(8) {
+        let byte = byte.iter().fold(0u8, |byte, bit| byte << 1 | (bit - b'0'));
+        jpeg.push(byte);
+        // A zero follows a byte of ones, which would begin a marker.
+        jpeg.extend((byte == 0xFF).then_some(0));
+    }
+    jpeg.extend([0xFF, 0xD9]);
+    jpeg
+}
+
 #[test]
 fn each_kind_of_picture_has_its_colour() {
     let rgb8 = DynamicImage::from(image::RgbImage::from_pixel(8, 8, image::Rgb([200, 60, 40])));
@@ -98,6 +135,10 @@ fn each_kind_of_picture_has_its_colour() {
         assert!((found - right).abs().max_element() <= tolerance, "{name}: {found}");
     };
     near(encoded(ImageFormat::Png, rgba8.clone()), "a.png", srgb, 1e-6);
+    near(encoded(ImageFormat::WebP, rgba8.clone()), "a.webp", srgb, 1e-6);
+    // Inks are stored as the light that they leave, 255 for none.
+    near(cmyk([200, 60, 40, 255]), "b.jpg", srgb, 1e-3);
+    near(cmyk([255, 255, 255, 60]), "c.jpg", Rgb::splat(srgb.y), 1e-3);
     near(encoded(ImageFormat::Png, rgb16.into()), "b.png", srgb, 1e-6);
     near(encoded(ImageFormat::Png, grey), "c.png", Rgb::splat(srgb.x), 1e-6);
     near(palette(), "d.png", srgb, 1e-6);

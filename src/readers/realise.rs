@@ -3,6 +3,7 @@
 //! Each file is read once. Results are in the order of the description, and so are errors.
 
 use crate::budget::{TriangleBudget, lacking};
+use crate::colour_profile;
 use crate::decode::{self, Channel, DecodedImage};
 use crate::draft::{Draft, DraftMesh};
 use crate::error::{Location, Log, SceneError, Warning};
@@ -21,6 +22,7 @@ use scene::requirements::ENVIRONMENT_TEXEL_BYTES;
 use scene::{Environment, EnvironmentMap, Scene, Texture, Textures};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// Bytes per texel that are copied while an environment is built.
 const COPY_BYTES: u64 = 12;
@@ -39,6 +41,8 @@ enum Realised {
     /// A texture that cannot be read.
     MissingTexture(usize, Warning),
     Environment(DecodedImage),
+    /// A warning about the file's colours.
+    Profile(Warning),
 }
 
 /// Hash of a file's bytes, if it was read, and its content.
@@ -52,7 +56,7 @@ struct ReadFiles {
     hashes: Vec<u64>,
     /// Meshes of each mesh plan.
     meshes: Vec<Vec<DraftMesh>>,
-    /// Warnings about each mesh plan.
+    /// Warnings about each mesh plan, and then about the colours of each image.
     remarks: Vec<Vec<Warning>>,
     /// Image of each texture plan.
     images: Vec<Option<DecodedImage>>,
@@ -68,7 +72,9 @@ impl ScenePlan {
         let ReadFiles { sources, hashes, mut meshes, remarks, mut images, mut missing, environment } = read;
         let mut contents = self.contents;
         contents.place_meshes(&mut meshes, log)?;
-        remarks.into_iter().flatten().try_for_each(|remark| log.add(remark))?;
+        let embedded = contents.embedded_profiles();
+        let mut remarks = remarks.into_iter().flatten().chain(embedded);
+        remarks.try_for_each(|remark| log.add(remark))?;
         contents.decode_embedded(&mut images, &mut missing)?;
         stand_in::replace(missing, &mut images, &mut contents.materials, log)?;
         lacking_uvs::report(&contents, &meshes, &images, log)?;
@@ -138,6 +144,7 @@ impl ReadFiles {
             Realised::Texture(i, image) => self.images[i] = Some(image),
             Realised::MissingTexture(i, warning) => _ = self.missing.insert(i, warning),
             Realised::Environment(image) => self.environment = Some(image),
+            Realised::Profile(warning) => self.remarks.push(vec![warning]),
         }
     }
 }
@@ -222,6 +229,24 @@ impl Contents {
         Ok(())
     }
 
+    /// Returns a warning about each image of colours that is part of a description and has a colour profile.
+    fn embedded_profiles(&self) -> Vec<Warning> {
+        let mut seen: Vec<&Arc<[u8]>> = Vec::new();
+        let mut warnings = Vec::new();
+        for plan in &self.textures {
+            let TextureSource::Part { source: ImageSource::Bytes(bytes), channel: Channel::Colour, name } =
+                &plan.image
+            else {
+                continue;
+            };
+            if !seen.iter().any(|other| Arc::ptr_eq(other, bytes)) {
+                seen.push(bytes);
+                warnings.extend(colour_profile::warning(bytes, Path::new(name), &plan.place));
+            }
+        }
+        warnings
+    }
+
     /// Decodes the images that are part of a description.
     fn decode_embedded(
         &self,
@@ -274,7 +299,15 @@ fn use_file(path: &Path, tasks: &[Task], budget: &TriangleBudget) -> Result<Used
     let hash = Some(fnv1a(&bytes));
     let done: Vec<Result<Realised, SceneError>> =
         tasks.par_iter().map(|task| perform(task, &bytes, path, budget)).collect();
-    Ok((hash, done.into_iter().collect::<Result<_, _>>()?))
+    let mut done: Vec<Realised> = done.into_iter().collect::<Result<_, _>>()?;
+    let place_of_colours = tasks.iter().find_map(|task| match task {
+        Task::Texture(_, plan, Channel::Colour) => Some(&plan.place),
+        Task::Environment(place) => Some(*place),
+        Task::Mesh(..) | Task::Texture(..) => None,
+    });
+    let profile = place_of_colours.and_then(|place| colour_profile::warning(&bytes, path, place));
+    done.extend(profile.map(Realised::Profile));
+    Ok((hash, done))
 }
 
 fn perform(task: &Task, bytes: &[u8], path: &Path, budget: &TriangleBudget) -> Result<Realised, SceneError> {

@@ -11,7 +11,8 @@ use base64::Engine;
 use base64::prelude::BASE64_STANDARD;
 use flate2::Compression;
 use flate2::write::ZlibEncoder;
-use image::{DynamicImage, ImageFormat};
+use image::codecs::png::PngEncoder;
+use image::{DynamicImage, ImageEncoder, ImageFormat};
 use lightsplat::film::{Film, Image, Layer, write_exr};
 use lightsplat::math::Rgb;
 use lightsplat::method::Method;
@@ -21,6 +22,7 @@ use lightsplat::session::{Goal, Session};
 use lightsplat::view::{Framing, View};
 use lightsplat::walk::{RetentionLimits, Walk};
 use model::Model;
+use moxcms::ColorProfile;
 use serde_json::json;
 use std::fs;
 use std::io::{Cursor, Write};
@@ -207,7 +209,11 @@ fn pictures() -> Vec<Seed> {
         image.write_to(&mut bytes, format).unwrap();
         Seed::plain(extension, bytes.into_inner())
     };
-    formats.into_iter().map(seed).collect()
+    let mut with_profile = Vec::new();
+    let mut encoder = PngEncoder::new(&mut with_profile);
+    encoder.set_icc_profile(ColorProfile::new_display_p3().encode().unwrap()).unwrap();
+    image.to_rgb8().write_with_encoder(encoder).unwrap();
+    formats.into_iter().map(seed).chain([Seed::plain("png", with_profile)]).collect()
 }
 
 /// Records of a frame of a walk.
