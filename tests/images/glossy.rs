@@ -10,7 +10,7 @@ use lightsplat::scene::{Distribution, Fresnel, Lobe, Material, Reflectance};
 
 /// A wall that a lamp lights by a plate of brushed metal alone: the lamp shines away from the wall.
 fn brushed_plate(alpha: f32) -> WorldAndView {
-    let mut scene = scene(camera(Vec3::new(0.0, 1.0, 2.0), Vec3::new(0.0, 1.0, -1.0), 0.5), [32, 32]);
+    let mut scene = scene(camera(Vec3::new(0.0, 1.0, 2.0), Vec3::new(0.0, 1.0, -1.0), 0.5), [24, 24]);
     let grey = add_material(&mut scene, diffuse(Rgb::new(0.6, 0.5, 0.4)));
     let black = add_material(&mut scene, diffuse(Rgb::ZERO));
     let lobe = Lobe::Rough {

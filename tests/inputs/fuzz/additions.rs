@@ -4,7 +4,9 @@ use super::mutate::Random;
 use lightsplat::film::{Film, Image, Layer, write_exr};
 use lightsplat::math::Rgb;
 use serde_json::json;
+use std::collections::BTreeMap;
 use std::fs;
+use std::sync::Mutex;
 
 /// A file with one statement more.
 pub struct Addition {
@@ -183,20 +185,37 @@ pub const SKY: Rgb = Rgb::splat(0.5);
 
 /// A picture with a further layer.
 fn exr(random: &mut Random) -> Addition {
-    let image = |value: f32| Image { width: 3, height: 2, pixels: vec![Rgb::splat(value); 6] };
-    let mut film = Film::new(image(SKY.x));
-    let own = name(random);
-    film.layers.push(match random.below(4) {
-        0 => Layer::color(own, image(2.0)),
-        1 => Layer::vector(own, image(2.0)),
-        2 => Layer::scalar(own, image(2.0).map(|pixel| pixel.x)),
-        _ => Layer::id(own, image(2.0).map(|_| 7)),
-    });
-    film.metadata.set("zz", "an attribute");
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("a.exr");
-    write_exr(&path, &film).unwrap();
-    Addition::without_effect(fs::read(path).unwrap(), "a layer")
+    let (own, kind) = (name(random), random.below(4));
+    // Channels of all names stand behind those of the picture, so a name of the same length can be replaced.
+    let known = format!("zz{}", "_".repeat(own.len() - 2));
+    let template = layered(&known, kind);
+    let mut bytes = template.clone();
+    for (at, _) in template.windows(known.len()).enumerate().filter(|(_, run)| *run == known.as_bytes()) {
+        bytes[at..at + own.len()].copy_from_slice(own.as_bytes());
+    }
+    Addition::without_effect(bytes, "a layer")
+}
+
+/// Returns the file of a picture with a layer of a kind. Each file is written once, since that waits for the disk.
+fn layered(layer: &str, kind: usize) -> Vec<u8> {
+    static FILES: Mutex<BTreeMap<(String, usize), Vec<u8>>> = Mutex::new(BTreeMap::new());
+    let mut files = FILES.lock().unwrap();
+    let write = || {
+        let image = |value: f32| Image { width: 3, height: 2, pixels: vec![Rgb::splat(value); 6] };
+        let mut film = Film::new(image(SKY.x));
+        film.layers.push(match kind {
+            0 => Layer::color(layer, image(2.0)),
+            1 => Layer::vector(layer, image(2.0)),
+            2 => Layer::scalar(layer, image(2.0).map(|pixel| pixel.x)),
+            _ => Layer::id(layer, image(2.0).map(|_| 7)),
+        });
+        film.metadata.set("zz", "an attribute");
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.exr");
+        write_exr(&path, &film).unwrap();
+        fs::read(path).unwrap()
+    };
+    files.entry((layer.to_owned(), kind)).or_insert_with(write).clone()
 }
 
 fn to_lines(text: &str, random: &mut Random) -> Addition {

@@ -1,10 +1,11 @@
 //! Damaged files of every kind, and pictures of damaged scenes: errors, never a panic, an endless run or memory without
 //! bounds.
 //!
-//! A case follows from its number. `cargo test --test inputs fuzz` tries some hundreds of every target; with
-//! `FUZZ_SECONDS=3600` in the environment a target goes on for so much processor time, from case `FUZZ_FIRST`, and says
-//! how many it tried. Files that fail go to `tests/scenes/fuzzed`, whose files are tried in every run. A case that ends
-//! the process, for it takes more than [`MAX_BYTES`] or [`MAX_SECONDS`], is left in `target/tmp/fuzz`.
+//! A case follows from its number. `cargo test --test inputs fuzz` tries some hundreds of each target. Variables of the
+//! environment change that (see [`Extent`]): with `FUZZ_CASES=100000` a target tries so many, with `FUZZ_SECONDS=3600`
+//! it goes on for so much processor time, from case `FUZZ_FIRST`. It then says how many cases it tried. Files that fail
+//! go to `tests/scenes/fuzzed`, whose files are tried in every run. A case that ends the process, for it takes more
+//! than [`MAX_BYTES`] or [`MAX_SECONDS`], is left in `target/tmp/fuzz`.
 
 mod additions;
 mod mutate;
@@ -24,9 +25,9 @@ use std::panic::{self, AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
-use std::thread;
 use std::time::Duration;
-use target::Workplace;
+use std::{slice, thread};
+use target::{Workplace, render, session_of};
 
 /// Maximum memory of all cases at hand, of which there is one a thread.
 const MAX_BYTES: usize = 3 << 30;
@@ -60,19 +61,15 @@ fn listen() {
     }));
 }
 
-/// Reads the case in place, and renders it; returns whether it loaded, or where and how it panicked.
-fn tried(
-    workplace: &Workplace,
-    extension: &str,
-    renders: bool,
-    random: &mut Random,
-) -> Result<bool, (String, String)> {
+/// Reads the case in place, and renders it once for each of `choices`; returns whether it loaded, or where and how it
+/// panicked.
+fn tried(workplace: &Workplace, extension: &str, choices: &mut [Random]) -> Result<bool, (String, String)> {
     TRYING.set(true);
     let result = catch_unwind(AssertUnwindSafe(|| {
-        let loaded = workplace.read(extension);
+        let loaded = workplace.read(extension, !choices.is_empty());
         let loads = loaded.is_some();
-        if let Some(loaded) = loaded.filter(|_| renders) {
-            workplace.render(loaded, random);
+        if let Some(session) = loaded.filter(|_| !choices.is_empty()).and_then(session_of) {
+            choices.iter_mut().for_each(|random| render(&session, random));
         }
         loads
     }));
@@ -115,29 +112,65 @@ fn children_seconds() -> f64 {
     numbers.filter_map(|number| number.parse::<f64>().ok()).sum::<f64>() / 100.0
 }
 
-/// Tries `count` cases of a target, or as many as the environment has time for.
+/// Cases of a run, as the environment asks for them.
+struct Extent {
+    /// Number of the first case: `FUZZ_FIRST`, or 0.
+    first: u64,
+    /// Number of cases: `FUZZ_CASES`, or that of a short run.
+    count: u64,
+    /// Processor seconds in place of a number of cases: `FUZZ_SECONDS`.
+    seconds: Option<u64>,
+    /// True if the environment asks for a number or a time.
+    is_asked_for: bool,
+    start: Stopwatch,
+}
+
+impl Extent {
+    /// Starts a run of `count` cases, or of those that the environment asks for.
+    fn start(count: u64) -> Extent {
+        let (asked, seconds) = (number("FUZZ_CASES"), number("FUZZ_SECONDS"));
+        Extent {
+            first: number("FUZZ_FIRST").unwrap_or(0),
+            count: asked.unwrap_or(count),
+            seconds,
+            is_asked_for: asked.is_some() || seconds.is_some(),
+            start: Stopwatch::start(),
+        }
+    }
+
+    /// Returns true if the run has this case.
+    fn has(&self, case: u64) -> bool {
+        match self.seconds {
+            Some(seconds) => self.spent() < seconds as f64,
+            None => case < self.first + self.count,
+        }
+    }
+
+    /// Returns the processor seconds of this program and of those that it ran.
+    fn spent(&self) -> f64 {
+        self.start.elapsed().cpu_seconds + children_seconds()
+    }
+}
+
+/// Tries `count` cases of a target, or those that the environment asks for.
 fn fuzz(target: &str, count: u64) {
     listen();
     let seeds = seeds::of(target);
-    let (seconds, first) = (number("FUZZ_SECONDS"), number("FUZZ_FIRST").unwrap_or(0));
+    let extent = Extent::start(count);
+    let first = extent.first;
     let name = format!("{target}-{first}");
     let workplace = Workplace::new(Path::new(env!("CARGO_TARGET_TMPDIR")).join("fuzz").join(&name));
-    let start = Stopwatch::start();
     let begun = watch(workplace.case("*"));
     let mut failed: BTreeMap<String, String> = BTreeMap::new();
-    let spent = || start.elapsed().cpu_seconds + children_seconds();
-    let is_wanted = |case: u64| match seconds {
-        Some(seconds) => spent() < seconds as f64,
-        None => case < first + count,
-    };
     let (mut case, mut loaded) = (first, 0);
-    while is_wanted(case) {
+    while extent.has(case) {
         begun.store(case + 1, Ordering::Relaxed);
         let mut random = Random::new(case);
         let (seed, other) = (random.pick(&seeds), random.pick(&seeds));
         let path = workplace.case(seed.extension);
         fs::write(&path, seed.pack(mutate(&seed.bytes, &other.bytes, &mut random))).unwrap();
-        match tried(&workplace, seed.extension, target == "picture", &mut random) {
+        let choices = if target == "picture" { slice::from_mut(&mut random) } else { &mut [] };
+        match tried(&workplace, seed.extension, choices) {
             Ok(loads) => loaded += u64::from(loads),
             Err((place, message)) => {
                 failed.entry(place.clone()).or_insert_with(|| {
@@ -149,8 +182,8 @@ fn fuzz(target: &str, count: u64) {
         }
         case += 1;
     }
-    if seconds.is_some() {
-        let (count, seconds) = (case - first, spent());
+    if extent.is_asked_for {
+        let (count, seconds) = (case - first, extent.spent());
         eprintln!(
             "{target}: {count} cases from {first}, of which {loaded} load, in {seconds:.0} s of the processor"
         );
@@ -196,10 +229,9 @@ fn files_that_failed_once_are_errors_or_pictures() {
         let path = file.unwrap().path();
         let Some(extension) = path.extension().map(|e| e.to_string_lossy().into_owned()) else { continue };
         fs::copy(&path, workplace.case(&extension)).unwrap();
-        for choice in 0..8 {
-            begun.fetch_add(1, Ordering::Relaxed);
-            let outcome = tried(&workplace, &extension, true, &mut Random::new(choice));
-            assert!(outcome.is_ok(), "{}: {outcome:?}", path.display());
-        }
+        begun.fetch_add(1, Ordering::Relaxed);
+        let mut choices: Vec<Random> = (0..8).map(Random::new).collect();
+        let outcome = tried(&workplace, &extension, &mut choices);
+        assert!(outcome.is_ok(), "{}: {outcome:?}", path.display());
     }
 }

@@ -4,9 +4,10 @@ use super::mutate::Random;
 use super::seeds::corpus;
 use crate::sound::assert_sound;
 use lightsplat::film::{ExrFile, Pixels};
+use lightsplat::math::Rgb;
 use lightsplat::method::Method;
 use lightsplat::progress::Control;
-use lightsplat::readers::{LoadOptions, Loaded, SceneError, load};
+use lightsplat::readers::{EnvironmentChoice, Lighting, LoadOptions, Loaded, SceneError, load};
 use lightsplat::session::{FrameError, Goal, Remark, Session};
 use lightsplat::view::{Framing, View};
 use lightsplat::walk::{RetentionLimits, Walk};
@@ -49,6 +50,12 @@ fn scenes() -> Vec<(String, String)> {
     scenes
 }
 
+/// Returns options for reading without a map of the sky, which takes longer than all else of a small file.
+pub fn without_sky() -> LoadOptions {
+    let environment = Some(EnvironmentChoice::Constant(Rgb::ONE));
+    LoadOptions { lighting: Lighting { environment, ..Lighting::default() }, ..LoadOptions::default() }
+}
+
 /// Folder with the corpus and scenes for cases.
 pub struct Workplace {
     folder: PathBuf,
@@ -86,8 +93,8 @@ impl Workplace {
         load(&scene, options)
     }
 
-    /// Reads the case; returns its scene, if it is a part of one that loads.
-    pub fn read(&self, extension: &str) -> Option<Loaded> {
+    /// Reads the case; returns its scene, if it is a part of one that loads. Models have a sky if it is rendered.
+    pub fn read(&self, extension: &str, is_rendered: bool) -> Option<Loaded> {
         let case = self.case(extension);
         match extension {
             "records" => {
@@ -109,7 +116,8 @@ impl Workplace {
             let _ = (file.color(), file.metadata(), file.window(), file.camera());
             file.layers().iter().for_each(|layer| _ = file.layer(layer));
         }
-        match self.load(extension, &LoadOptions::default()) {
+        let has_sky = is_rendered || !matches!(extension, "gltf" | "glb");
+        match self.load(extension, &if has_sky { LoadOptions::default() } else { without_sky() }) {
             Ok(loaded) => {
                 assert_sound(&loaded);
                 Some(loaded)
@@ -129,50 +137,55 @@ impl Workplace {
             command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null()).status().unwrap().code();
         assert!(matches!(code, Some(0 | 2..=5)), "the command ends with {code:?}");
     }
+}
 
-    /// Renders a scene on a few pixels, by a method picked.
-    pub fn render(&self, loaded: Loaded, random: &mut Random) {
-        if loaded.scene.meshes.iter().map(|mesh| mesh.triangles.len()).sum::<usize>() > MAX_TRIANGLES {
-            return;
-        }
-        let frames = loaded.cameras.path.len();
-        let Ok(session) = Session::of(loaded.scene, loaded.cameras) else { return };
-        let mut method = *random.pick(&Method::all().collect::<Vec<_>>());
-        for (key, value) in [
-            ("spp", "1"),
-            ("vpls", "200"),
-            ("direct_vpls", "64"),
-            ("photons", "500"),
-            ("gather_rays", "64"),
-            ("probe_rays", "64"),
-            ("least_cell", "8"),
-            ("max_depth", "64"),
-        ] {
-            // Methods have some of them.
-            let _ = method.set(key, value);
-        }
-        let frame = (frames > 0 && random.below(2) == 0).then(|| 1 + random.below(frames));
-        let framing = Framing { frame, resolution: Some([8, 8]), crop: None };
-        let view = View::new(&session.cameras, &framing).unwrap();
-        let goal = Goal { method, denoise: Some(false), ..Goal::default() };
-        let frame = match session.frame(&view, &goal, &Control::new()) {
-            Ok(frame) => frame,
-            Err(FrameError::Memory { .. } | FrameError::Unplannable(_)) => return,
-            Err(error) => panic!("{error}"),
+/// Prepares a scene for rendering, unless it is too large.
+pub fn session_of(loaded: Loaded) -> Option<Session> {
+    let triangles: usize = loaded.scene.meshes.iter().map(|mesh| mesh.triangles.len()).sum();
+    if triangles > MAX_TRIANGLES {
+        return None;
+    }
+    Session::of(loaded.scene, loaded.cameras).ok()
+}
+
+/// Renders a scene on a few pixels, by a method picked.
+pub fn render(session: &Session, random: &mut Random) {
+    let frames = session.cameras.path.len();
+    let mut method = *random.pick(&Method::all().collect::<Vec<_>>());
+    for (key, value) in [
+        ("spp", "1"),
+        ("vpls", "200"),
+        ("direct_vpls", "64"),
+        ("photons", "500"),
+        ("gather_rays", "64"),
+        ("probe_rays", "64"),
+        ("least_cell", "8"),
+        ("max_depth", "64"),
+    ] {
+        // Methods have some of them.
+        let _ = method.set(key, value);
+    }
+    let frame = (frames > 0 && random.below(2) == 0).then(|| 1 + random.below(frames));
+    let framing = Framing { frame, resolution: Some([8, 8]), crop: None };
+    let view = View::new(&session.cameras, &framing).unwrap();
+    let goal = Goal { method, denoise: Some(false), ..Goal::default() };
+    let frame = match session.frame(&view, &goal, &Control::new()) {
+        Ok(frame) => frame,
+        Err(FrameError::Memory { .. } | FrameError::Unplannable(_)) => return,
+        Err(error) => panic!("{error}"),
+    };
+    let name = method.name();
+    assert!(frame.film.color.pixels.iter().all(|pixel| pixel.is_finite()), "{name}");
+    for layer in &frame.film.layers {
+        let is_finite = match &layer.pixels {
+            Pixels::Color(image) | Pixels::Vector(image) => image.pixels.iter().all(|p| p.is_finite()),
+            Pixels::Scalar(image) => image.pixels.iter().all(|p| p.is_finite()),
+            Pixels::Id(_) => true,
         };
-        let name = method.name();
-        assert!(frame.film.color.pixels.iter().all(|pixel| pixel.is_finite()), "{name}");
-        for layer in &frame.film.layers {
-            let is_finite = match &layer.pixels {
-                Pixels::Color(image) | Pixels::Vector(image) => image.pixels.iter().all(|p| p.is_finite()),
-                Pixels::Scalar(image) => image.pixels.iter().all(|p| p.is_finite()),
-                Pixels::Id(_) => true,
-            };
-            assert!(is_finite, "{name}: layer {}", layer.name);
-        }
-        for remark in &frame.remarks {
-            let (Remark::Note(text) | Remark::Warning(text)) = remark;
-            assert!(!text.contains("this is a defect"), "{name}: {text}");
-        }
+        assert!(is_finite, "{name}: layer {}", layer.name);
+    }
+    for remark in &frame.remarks {
+        let (Remark::Note(text) | Remark::Warning(text)) = remark;
+        assert!(!text.contains("this is a defect"), "{name}: {text}");
     }
 }

@@ -1,30 +1,30 @@
 //! Valid files with one statement more, which no reader knows: a warning or an error tells it, unless it cannot change
-//! a
-//! picture.
+//! a picture.
 //!
 //! Comments, `extras`, names that a format reserves for other programs, and channels of an image besides its picture
 //! cannot change a picture. Nothing may be said about them.
 //!
 //! A case follows from its number, as those of [`super::fuzz`] do, and the same variables of the environment count.
 
+use super::Extent;
 use super::additions::{self, Addition};
 use super::mutate::Random;
-use super::number;
 use super::seeds;
-use super::target::Workplace;
+use super::target::{Workplace, without_sky};
 use lightsplat::readers::LoadOptions;
 use lightsplat::scene::Environment;
-use lightsplat::stats::Stopwatch;
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
-/// Tries `count` additions to files of a format, or as many as the environment has time for.
+/// Tries `count` additions to files of a format, or those that the environment asks for.
 fn add(format: &str, count: u64) {
-    let (seconds, first) = (number("FUZZ_SECONDS"), number("FUZZ_FIRST").unwrap_or(0));
+    let extent = Extent::start(count);
+    let first = extent.first;
     let name = format!("unknown-{format}-{first}");
     let workplace = Workplace::new(Path::new(env!("CARGO_TARGET_TMPDIR")).join("fuzz").join(name));
-    let options = LoadOptions::default();
+    // The environment is the picture of EXR files.
+    let options = if format == "exr" { LoadOptions::default() } else { without_sky() };
     // Number of warnings about a file; `None` if it does not load.
     let warnings = |extension: &str, bytes: &[u8]| -> Result<usize, String> {
         fs::write(workplace.case(extension), bytes).unwrap();
@@ -45,14 +45,9 @@ fn add(format: &str, count: u64) {
             .collect(),
     };
     assert!(!seeds.is_empty(), "no seed of {format} loads");
-    let start = Stopwatch::start();
-    let is_wanted = |case: u64| match seconds {
-        Some(seconds) => start.elapsed().cpu_seconds < seconds as f64,
-        None => case < first + count,
-    };
     let mut wrong: BTreeMap<String, String> = BTreeMap::new();
     let (mut case, mut told) = (first, 0);
-    while is_wanted(case) {
+    while extent.has(case) {
         let mut random = Random::new(case);
         let (before, extension, bytes) = random.pick(&seeds);
         let Addition { bytes, kind, is_told } = additions::add(format, bytes, &mut random);
@@ -65,8 +60,11 @@ fn add(format: &str, count: u64) {
         }
         case += 1;
     }
-    if seconds.is_some() {
-        eprintln!("{format}: {} additions from {first}, of which {told} are told", case - first);
+    if extent.is_asked_for {
+        let (count, seconds) = (case - first, extent.spent());
+        eprintln!(
+            "{format}: {count} additions from {first}, of which {told} are told, in {seconds:.0} s of the processor"
+        );
     }
     let _ = fs::remove_dir_all(workplace.case("").parent().unwrap());
     assert!(wrong.is_empty(), "{:#?}", wrong.values().collect::<Vec<_>>());

@@ -23,11 +23,15 @@ fn load_bytes(name: &str, bytes: &[u8]) -> Result<Loaded, SceneError> {
 }
 
 fn load_beside(name: &str, files: &[(&str, &[u8])]) -> Result<Loaded, SceneError> {
+    load_with(name, files, &LoadOptions::default())
+}
+
+fn load_with(name: &str, files: &[(&str, &[u8])], options: &LoadOptions) -> Result<Loaded, SceneError> {
     let folder = tempfile::tempdir().unwrap();
     for (name, bytes) in files {
         fs::write(folder.path().join(name), bytes).unwrap();
     }
-    load(&folder.path().join(name), &LoadOptions::default())
+    load(&folder.path().join(name), options)
 }
 
 fn sample(name: &str) -> Loaded {

@@ -4,7 +4,11 @@
 use super::*;
 use crate::mitsuba::statements::TABLES;
 use crate::statements::{Fate, Statement, assert_page_lists};
+use glam::{UVec3, Vec3};
 use rayon::prelude::*;
+use scene::{Cameras, Environment, Scene};
+use std::hash::{DefaultHasher, Hash, Hasher};
+use std::mem;
 use std::path::Path;
 
 /// Files beside every scene.
@@ -218,7 +222,24 @@ fn outcome(path: &Path, text: &str) -> Result<(String, Vec<String>), String> {
     let loaded = load(path, &LoadOptions::default()).map_err(|error| error.to_string())?;
     let such = loaded.warnings.iter().filter(|warning| warning.severity == Severity::Warning);
     let warnings = such.map(|warning| warning.to_string()).collect();
-    Ok((format!("{:?} {:?}", loaded.scene, loaded.cameras), warnings))
+    Ok((description(loaded.scene, &loaded.cameras), warnings))
+}
+
+/// Returns a scene and its cameras as text, and the hash of long lists of numbers, whose text would take long.
+fn description(mut scene: Scene, cameras: &Cameras) -> String {
+    let mut hash = DefaultHasher::new();
+    let mut add =
+        |vectors: Vec<Vec3>| vectors.iter().for_each(|v| v.to_array().map(f32::to_bits).hash(&mut hash));
+    if let Some(Environment::Map(map)) = &mut scene.environment {
+        add(mem::take(&mut map.radiance));
+    }
+    for mesh in &mut scene.meshes {
+        add(mem::take(&mut mesh.positions));
+        add(mem::take(&mut mesh.normals));
+        add(mesh.uvs.drain(..).map(|uv| uv.extend(0.0)).collect());
+        add(mesh.triangles.drain(..).map(|corners| UVec3::from(corners).as_vec3()).collect());
+    }
+    format!("{scene:?} {cameras:?} {:x}", hash.finish())
 }
 
 /// Says why a row of the table for `tag` is wrong; `None` if it is right. `path` is a scene beside the files.
