@@ -179,9 +179,9 @@ impl JobEntry {
         self.arguments = arguments;
         self.reading = match self.command()? {
             Command::Render(args) => {
-                LoadOptions { frame: args.frame.map(NonZeroUsize::get), ..args.picture.reading.options() }
+                args.picture.reading.options_at(&args.scene, args.frame.map(NonZeroUsize::get))
             }
-            Command::Walk(args) => LoadOptions { frame: FIRST_POSE, ..args.picture.reading.options() },
+            Command::Walk(args) => args.picture.reading.options_at(&args.scene, Some(FIRST_POSE)),
             _ => LoadOptions::default(),
         };
         Ok(self)

@@ -88,11 +88,8 @@ impl RenderJob {
             )));
         }
         Ok(RenderJob {
+            reading: args.picture.reading.options_at(&args.scene, args.frame.map(NonZeroUsize::get)),
             scene: args.scene,
-            reading: LoadOptions {
-                frame: args.frame.map(NonZeroUsize::get),
-                ..args.picture.reading.options()
-            },
             files,
             previews,
             dry_run,

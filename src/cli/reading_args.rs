@@ -3,6 +3,7 @@
 use clap::{Args, ValueEnum};
 use glam::DVec3;
 use readers::{EnvironmentChoice, Lighting, LoadOptions, UpAxis, Viewpoint};
+use std::path::Path;
 
 /// Options of reading a scene.
 #[derive(Clone, Debug, Default, Args)]
@@ -83,6 +84,15 @@ impl ReadingArgs {
                 UpAxisName::Z => UpAxis::Z,
             }),
         }
+    }
+}
+
+impl ReadingArgs {
+    /// Returns the options of the scene reader for a frame of the scene at `path`. Models of glTF alone have poses.
+    pub fn options_at(self, path: &Path, frame: Option<usize>) -> LoadOptions {
+        let extension = path.extension().map(|extension| extension.to_string_lossy().to_lowercase());
+        let has_poses = extension.is_some_and(|extension| matches!(extension.as_str(), "glb" | "gltf"));
+        LoadOptions { frame: frame.filter(|_| has_poses), ..self.options() }
     }
 }
 

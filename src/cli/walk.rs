@@ -98,7 +98,7 @@ struct Frames<'a> {
 impl Frames<'_> {
     /// Renders a chunk of one frame of the model that moves in `first`, the scene of the first frame.
     fn posed(&mut self, chunk: PlannedChunk, first: &Opened) -> Result<(), Failure> {
-        let Some(number) = chunk.unwritten().next().filter(|number| Some(*number) != FIRST_POSE) else {
+        let Some(number) = chunk.unwritten().next().filter(|number| *number != FIRST_POSE) else {
             return self.chunk(chunk, &first.session);
         };
         if self.control.is_cancelled() {

@@ -19,7 +19,7 @@ use std::path::PathBuf;
 use world::view::Framing;
 
 /// Frame whose pose a model takes when the scene of a walk is read.
-pub const FIRST_POSE: Option<usize> = Some(1);
+pub const FIRST_POSE: usize = 1;
 
 /// A validated walk: scene, method, frames and their files.
 #[derive(Debug)]
@@ -82,8 +82,8 @@ impl WalkJob {
         let no_overwrite = args.picture.no_overwrite;
         let check = OutputCheck { may_stay: args.picture.resume, is_dry: args.picture.dry_run };
         let job = WalkJob {
+            reading: args.picture.reading.options_at(&args.scene, Some(FIRST_POSE)),
             scene: args.scene,
-            reading: LoadOptions { frame: FIRST_POSE, ..args.picture.reading.options() },
             frames: args.frames,
             chunk: args.chunk,
             resume: args.picture.resume,
