@@ -1,5 +1,8 @@
 //! Colour profiles of image files. They are not read: colours count as sRGB, and a warning names another profile.
 //!
+//! The rules of glTF ask for that (glTF 2.0 specification, section 3.8.3), and Mitsuba does so. No warning names the
+//! profiles of their images.
+//!
 //! Profiles stand in chunks of PNG (`cICP`, `iCCP`, `sRGB`, `gAMA` and `cHRM`, the first of which counts), and as ICC
 //! profiles in JPEG and WebP. An ICC profile counts as sRGB if it maps codes to about the colours that they have in
 //! sRGB. So do exponents of 2.2.
@@ -23,6 +26,10 @@ const MAX_GAMMA: f32 = 0.01;
 
 /// Returns a warning if the image `path` has a colour profile other than sRGB; `place` refers to it.
 pub(crate) fn warning(bytes: &[u8], path: &Path, place: &Location) -> Option<Warning> {
+    let format = place.path.extension().unwrap_or_default().to_ascii_lowercase();
+    if ["gltf", "glb", "xml"].iter().any(|ignoring| format == *ignoring) {
+        return None;
+    }
     let what = format!("{}: {} is not read", path.display(), other_than_srgb(bytes)?);
     Some(Warning::new(place.clone(), what, "colours count as sRGB; convert the image to sRGB"))
 }
@@ -190,6 +197,9 @@ mod tests {
             one.len() == 1 && one[0].contains("linear.png: the exponent 1 (gAMA) is not read"),
             "{one:?}"
         );
+        let linear = std::fs::read(folder.path().join("linear.png")).unwrap();
+        let of = |scene: &str| warning(&linear, Path::new("linear.png"), &Location::file(Path::new(scene)));
+        assert!(of("a.mtl").is_some() && of("a.xml").is_none() && of("a.GLB").is_none());
     }
 
     #[test]

@@ -22,7 +22,6 @@ use scene::requirements::ENVIRONMENT_TEXEL_BYTES;
 use scene::{Environment, EnvironmentMap, Scene, Texture, Textures};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 
 /// Bytes per texel that are copied while an environment is built.
 const COPY_BYTES: u64 = 12;
@@ -72,9 +71,7 @@ impl ScenePlan {
         let ReadFiles { sources, hashes, mut meshes, remarks, mut images, mut missing, environment } = read;
         let mut contents = self.contents;
         contents.place_meshes(&mut meshes, log)?;
-        let embedded = contents.embedded_profiles();
-        let mut remarks = remarks.into_iter().flatten().chain(embedded);
-        remarks.try_for_each(|remark| log.add(remark))?;
+        remarks.into_iter().flatten().try_for_each(|remark| log.add(remark))?;
         contents.decode_embedded(&mut images, &mut missing)?;
         stand_in::replace(missing, &mut images, &mut contents.materials, log)?;
         lacking_uvs::report(&contents, &meshes, &images, log)?;
@@ -227,24 +224,6 @@ impl Contents {
             }
         }
         Ok(())
-    }
-
-    /// Returns a warning about each image of colours that is part of a description and has a colour profile.
-    fn embedded_profiles(&self) -> Vec<Warning> {
-        let mut seen: Vec<&Arc<[u8]>> = Vec::new();
-        let mut warnings = Vec::new();
-        for plan in &self.textures {
-            let TextureSource::Part { source: ImageSource::Bytes(bytes), channel: Channel::Colour, name } =
-                &plan.image
-            else {
-                continue;
-            };
-            if !seen.iter().any(|other| Arc::ptr_eq(other, bytes)) {
-                seen.push(bytes);
-                warnings.extend(colour_profile::warning(bytes, Path::new(name), &plan.place));
-            }
-        }
-        warnings
     }
 
     /// Decodes the images that are part of a description.
