@@ -15,8 +15,8 @@ use png::{Info, SourceChromaticities};
 use std::io::Cursor;
 use std::path::Path;
 
-/// Maximum difference of a linear value from that of sRGB. An exponent of 2.2 differs by up to 0.009.
-const MAX_DIFFERENCE: f32 = 0.01;
+/// Maximum difference of a linear value from that of sRGB. An exponent of 2.2 differs by up to 0.011, with rounding.
+const MAX_DIFFERENCE: f32 = 0.015;
 /// Maximum difference of a chromaticity from that of sRGB.
 const MAX_CHROMATICITY: f32 = 0.002;
 /// Exponent that files of sRGB state.
