@@ -54,7 +54,7 @@ fn pictures_count_as_much_as_they_have_samples_and_merged_ones_can_be_merged_aga
     let error = |file: &ExrFile| file.metadata().number("standard_error").unwrap();
     let ratio = error(&all) / error(&file(&sandbox, "whole.exr"));
     assert!((0.9..1.1).contains(&ratio), "{ratio}");
-    assert!(merge(&sandbox, &["ab.exr", "b.exr"]).expect(3).stderr.contains("seed 2, too"));
+    assert!(merge(&sandbox, &["ab.exr", "b.exr"]).expect(3).stderr.contains("also has seed 2"));
 }
 
 #[test]
@@ -79,7 +79,7 @@ fn pictures_that_do_not_belong_together_are_refused_with_the_reason() {
     let path = ["--method", "path"];
     render(&sandbox, "a.exr", "1", "1", &path);
     let cases: [(&str, &[&str]); 5] = [
-        ("seed 1, too", &["--method", "path", "--seed", "1"]),
+        ("also has seed 1", &["--method", "path", "--seed", "1"]),
         ("setting, besides", &["--method", "path", "--seed", "2", "--max-depth", "2"]),
         ("size or crop", &["--method", "path", "--seed", "2", "--crop", "0,0,4,4"]),
         ("method", &["--seed", "2", "--vpls", "100", "--no-denoise"]),

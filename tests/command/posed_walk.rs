@@ -100,7 +100,7 @@ fn each_frame_shows_the_pose_of_its_time_as_a_still_of_it_does() {
     // A frame that lacks is rendered alone, and frames of the default method have no records.
     fs::remove_file(sandbox.path("a.2.exr")).unwrap();
     let said = run(&sandbox, "walk", "a.#.exr", &["--resume"]).expect(0).stderr;
-    assert!(said.contains("1 frames rendered, 2 left"), "{said}");
+    assert!(said.contains("1 frames rendered, 2 existed already"), "{said}");
     assert_eq!(light(&colours(&sandbox, "a.2.exr")).1.abs().round(), 0.0);
     let default = ["walk", "m.gltf", "-o", "c.#.exr", "--resolution", "24x24", "--spp", "16", "--no-denoise"];
     sandbox.run(&[&default[..], &["--no-default-light", "--vpls", "500"]].concat()).expect(0);

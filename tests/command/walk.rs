@@ -156,7 +156,7 @@ fn resuming_leaves_whole_frames_alone_and_does_others_anew() {
         assert_eq!(ExrFile::read(&file(&name)).unwrap().metadata().number("frame"), Some(number));
     }
     let stderr = walk(&sandbox, "1-6", &["--resume"]).expect(0).stderr;
-    assert!(stderr.contains("0 frames rendered, 6 left"), "{stderr}");
+    assert!(stderr.contains("0 frames rendered, 6 existed already"), "{stderr}");
     // Other settings, or another scene, make other frames.
     let stderr = walk(&sandbox, "1-2", &["--resume", "--seed", "7"]).expect(0).stderr;
     assert!(stderr.contains("2 frames rendered"), "{stderr}");
