@@ -225,7 +225,7 @@ mod tests {
         );
         for wide in [estimate(0.0, 7.64), estimate(0.0, f64::NAN), estimate(f64::INFINITY, 0.0)] {
             let [_, Remark::Warning(text)] = &of_measured(&found(wide))[..] else { panic!("{wide:?}") };
-            assert!(text.contains("more --verify narrow"), "{text}");
+            assert!(text.contains("more pixels (--verify) narrow"), "{text}");
         }
     }
 }
