@@ -3,6 +3,9 @@
 /// Most ticks of an axis that are labelled.
 const TICKS: usize = 8;
 
+/// Multiples of powers of ten that are labelled, the densest first.
+const FACTORS: [&[u32]; 3] = [&[1, 2, 3, 4, 5, 6, 7, 8, 9], &[1, 2, 5], &[1]];
+
 /// A logarithmic axis.
 pub struct Axis {
     /// Range of values.
@@ -26,10 +29,10 @@ impl Axis {
         from + (to - from) * (value / self.low).ln() / (self.high / self.low).ln()
     }
 
-    /// Returns 1, 2 and 5 times powers of ten within the range; powers of ten alone if there are many.
+    /// Returns the densest round values within the range that are not too many, or else the powers of ten.
     pub fn ticks(&self) -> Vec<f64> {
-        let all = self.multiples(&[1, 2, 5]);
-        if all.len() <= TICKS { all } else { self.multiples(&[1]) }
+        let densest = FACTORS.iter().map(|factors| self.multiples(factors)).find(|all| all.len() <= TICKS);
+        densest.unwrap_or_else(|| self.multiples(&[1]))
     }
 
     /// Returns some multiples of powers of ten within the range.
@@ -51,5 +54,6 @@ mod tests {
         let axis = Axis { low: 0.03, high: 1.2, ends: [0.0, 1.0] };
         assert_eq!(axis.ticks(), [0.05, 0.1, 0.2, 0.5, 1.0]);
         assert_eq!(Axis { high: 1200.0, ..axis }.ticks(), [0.1, 1.0, 10.0, 100.0, 1000.0]);
+        assert_eq!(Axis { low: 0.025, high: 0.061, ..axis }.ticks(), [0.03, 0.04, 0.05, 0.06]);
     }
 }
