@@ -76,12 +76,28 @@ impl Size {
         if self.merged { self.pixels } else { self.samples }
     }
 
+    /// Returns the number of samples, extra ones included, if the first samples are taken in `rounds`, each takes
+    /// `another` seconds, and all else takes `rest` seconds.
+    fn all_samples(&self, rounds: f64, rest: f64, another: f64) -> f64 {
+        let extra = ExtraSamples { most: self.most_extra, other_rays: Some(rest) };
+        let first = rounds * self.samples;
+        first * f64::from(1.0 + extra.share(first * another))
+    }
+
     fn gamma(&self) -> f64 {
         match self {
             Size { merged: true, .. } => MERGED_GAMMA,
             Size { patches: true, .. } => PATCHES_GAMMA,
             _ => OTHER_GAMMA,
         }
+    }
+}
+
+impl Timed {
+    /// Returns how often all pixels got the first samples, 1 or 2, from the number of samples of `another` seconds.
+    fn rounds(&self, another: f64) -> f64 {
+        let [one, two] = [1.0, 2.0].map(|rounds| self.size.all_samples(rounds, self.rest, another));
+        if self.samples > (one * two).sqrt() { 2.0 } else { 1.0 }
     }
 }
 
@@ -120,8 +136,7 @@ impl TimeModel {
         let rest = last.rest * (self.beta * (level - last.level)).exp() * points.powf(1.0 - size.gamma());
         let eye = match self.eye {
             Some(another) => {
-                let extra = ExtraSamples { most: size.most_extra, other_rays: Some(rest) };
-                let samples = size.samples * f64::from(1.0 + extra.share(size.samples * another));
+                let samples = size.all_samples(last.rounds(another), rest, another);
                 (last.eye + (samples - last.samples) * another).max(0.0)
             }
             None if last.size.vpls > 0.0 => {
@@ -160,18 +175,17 @@ mod tests {
     }
 
     /// A machine on which the model is exact.
-    fn timed(level: f64, size: Size) -> Timed {
+    fn timed(level: f64, size: Size, rounds: f64) -> Timed {
         let rest = 1e-5 * (0.6 * level).exp() * size.points().powf(1.0 - size.gamma());
         let another = 2e-7;
-        let extra = ExtraSamples { most: size.most_extra, other_rays: Some(rest) };
-        let samples = size.samples * f64::from(1.0 + extra.share(another * size.samples));
+        let samples = size.all_samples(rounds, rest, another);
         Timed { level, size, samples, light: 3e-6 * size.vpls, eye: 5e-3 + another * samples, rest }
     }
 
     #[test]
     fn exact_costs_are_predicted_from_three_renders() {
-        for merged in [false, true] {
-            let of = |level, pixels, spp, vpls| timed(level, size(pixels, spp, vpls, merged));
+        for (merged, rounds) in [(false, 1.0), (true, 1.0), (true, 2.0)] {
+            let of = |level, pixels, spp, vpls| timed(level, size(pixels, spp, vpls, merged), rounds);
             let known = [of(0.0, 4e3, 1.0, 2e4), of(0.0, 1.6e4, 1.0, 2e4), of(2.5, 1.6e4, 3.0, 1e5)];
             let cost = TimeModel::fit(&known, 0.0).unwrap();
             for (level, pixels, spp, vpls) in
@@ -187,7 +201,7 @@ mod tests {
     #[test]
     fn one_render_makes_a_model_and_none_does_not() {
         assert!(TimeModel::fit(&[], 0.0).is_none());
-        let expected = timed(1.0, size(4e3, 1.0, 2e4, false));
+        let expected = timed(1.0, size(4e3, 1.0, 2e4, false), 1.0);
         let one = TimeModel::fit(&[expected], 1e-6).unwrap();
         assert_eq!(one.finishing(&size(4e3, 2.0, 2e4, false)), 8e-3);
         let seconds = |level, spp| one.seconds(level, &size(4e3, spp, 2e4, false));

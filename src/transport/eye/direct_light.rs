@@ -3,10 +3,12 @@
 //! Paths stop at the first surfaces that scatter light broadly. Emitters are sampled there. The hits are merged into
 //! shading points, whose indirect light remains to be found.
 //!
-//! All pixels first get the same number of samples. Pixels in high-contrast surroundings then get more ([`adaptive`]).
-//! A pilot learns beforehand which emitters each region of the scene sees ([`learn`]).
+//! All pixels first get the same number of samples, twice if a pilot finds that this pays ([`extra`]). Pixels in
+//! high-contrast surroundings then get more ([`adaptive`]). A pilot learns beforehand which emitters each region of the
+//! scene sees ([`learn`]).
 //!
 //! [`adaptive`]: super::adaptive
+//! [`extra`]: super::extra
 //! [`learn`]: super::learn
 
 use super::adaptive::MULTIPLES;
@@ -45,6 +47,8 @@ impl<'w> EyePass<'w> {
         let learned = found.as_ref().map(|(learned, _)| learned);
         let effort = tracer.effort(learned);
         tracer.light_samples.count = effort.as_ref().map_or(1, |effort| effort.light_samples);
+        let rounds = effort.as_ref().map_or(1, |effort| effort.rounds);
+        tracer.settings.spp *= rounds;
         let works = Workspaces::new(|| tracer.workspace_with_guides(learned));
         let live = control.live([view.window.width, view.window.height]);
         let first = |index| {
@@ -72,6 +76,8 @@ impl<'w> EyePass<'w> {
         if let Some(needs) = needs {
             pass.chains += needs.chains;
         }
+        let more = u64::from(settings.spp) * u64::from(rounds - 1);
+        pass.chains.extra_samples += more * view.window.pixel_count();
         if let Some(effort) = effort {
             pass.chains += effort.chains;
             pass.light_samples = effort.light_samples;

@@ -35,6 +35,8 @@ pub(super) struct Effort {
     pub choice: Option<AdaptiveRule>,
     /// Light samples per chain end.
     pub light_samples: u32,
+    /// Number of times that all pixels get the first samples.
+    pub rounds: u32,
     /// Mean over pixels of the relative variance, at most 1 per pixel.
     pub noise: f32,
     /// Rays that the pilot traced.
@@ -64,12 +66,16 @@ impl<'w> Tracer<'_, 'w> {
         let sampled: usize = 2 * values.iter().map(Vec::len).sum::<usize>() * spp as usize;
         let film = self.view.window.film_pixel_count() as f64;
         let a_sample = (chains.rays + chains.shadow_rays) as f64 / sampled.max(1) as f64;
-        let share = self.direct.extra_samples.share(a_sample * f64::from(spp) * film);
-        let choice =
-            AdaptiveRule::new(&squares.into_iter().zip(&values).map(filled).collect::<Vec<_>>(), share);
-        let noise = PixelNoise::of(&values, &again, spp, choice.dark);
-        let choice = (share > 0.0).then_some(choice);
-        Some(Effort { choice, light_samples: noise.light_samples(), noise: noise.all, chains })
+        let rays = a_sample * f64::from(spp) * film;
+        let squares: Vec<Luminances> = squares.into_iter().zip(&values).map(filled).collect();
+        let dark = AdaptiveRule::new(&squares, 0.0).dark;
+        let noise = PixelNoise::of(&values, &again, spp, dark);
+        let light_samples = noise.light_samples();
+        let extra = &self.direct.extra_samples;
+        let rounds = extra.rounds(rays, noise.with(light_samples));
+        let share = extra.share(f64::from(rounds) * rays);
+        let choice = (share > 0.0).then(|| AdaptiveRule::new(&squares, share));
+        Some(Effort { choice, light_samples, rounds, noise: noise.all / rounds as f32, chains })
     }
 
     /// Returns the luminances that the first samples of groups of film pixels find, by all of them and by the first
@@ -123,6 +129,11 @@ impl PixelNoise {
             count += 1.0;
         }
         PixelNoise { all: all / count.max(1.0), by_light: by_light / count.max(1.0) }
+    }
+
+    /// Returns the relative variance with a number of light samples.
+    fn with(&self, light_samples: u32) -> f32 {
+        (self.all - self.by_light * (1.0 - 1.0 / light_samples as f32)).max(0.0)
     }
 
     /// Returns the number of light samples with the least product of variance and cost.

@@ -58,7 +58,8 @@ settings! {
         /// Source of direct light.
         direct: DirectBy = DirectBy::Sampled => [.values(&["drawn", "records", "cuts"]).judged_by(JudgedBy::Flip)];
         /// Budget of extra samples for high-contrast pixels, as a fraction of all samples (1 = as many again). A chosen
-        /// pixel gets up to 3 x `spp` more. The budget is at most 0.2 if samples dominate the time.
+        /// pixel gets up to 3 x `spp` more. The budget is at most 0.2 if samples dominate the time. With 1, noisy
+        /// images whose samples cost little get all samples twice.
         extra_samples: f32 = 1.0 => [.fraction().values(&["0", "0.2", "0.5", "1"]).with(&[("direct", "drawn")])];
         /// Source of indirect light.
         indirect: FoundBy = FoundBy::Records => [.values(&["records", "cuts"])];
