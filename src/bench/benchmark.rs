@@ -89,7 +89,7 @@ impl Benchmark {
         let mut facts = context.machine.clone();
         facts.push(("samples per case".to_owned(), context.settings.repeats.to_string()));
         if let Some(Session { world, .. }) = context.session {
-            let triangles = world.scene.triangle_count();
+            let triangles = world.scene.seen_triangle_count();
             facts.push(("triangles".to_owned(), triangles.to_string()));
         }
         Report {

@@ -40,6 +40,8 @@ fn facts(loaded: &Loaded) -> Value {
         "box": bounds(&loaded.scene),
         "meshes": meshes.len(),
         "triangles": meshes.iter().map(|m| m.triangles.len()).sum::<usize>(),
+        "seen_triangles": loaded.scene.seen_triangle_count(),
+        "instances": loaded.scene.groups.iter().map(|group| group.placements.len()).sum::<usize>(),
         "vertices": meshes.iter().map(|m| m.positions.len()).sum::<usize>(),
         "materials": materials.len(),
         "material_names": materials.iter().map(|material| &material.name).collect::<Vec<_>>(),

@@ -21,7 +21,8 @@ pub fn cameras(names: &Value) -> String {
 
 /// Returns all lights: kind, name and size of emitting meshes, and positions in units of the file.
 pub fn lights(scene: &Scene) -> Vec<Value> {
-    let largest = corners(scene).map(|corner| in_file(scene, corner).abs().max_element()).fold(0.0, f64::max);
+    let corners = scene.seen_bounds(|_| true).into_iter().flatten();
+    let largest = corners.map(|corner| in_file(scene, corner).abs().max_element()).fold(0.0, f64::max);
     let position = |local: Vec3| rounded(in_file(scene, local), largest);
     let delta = |light: &DeltaLight| match light {
         DeltaLight::Point { position: at, .. } => json!({ "kind": "point", "position": position(*at) }),
@@ -52,8 +53,8 @@ pub fn lights(scene: &Scene) -> Vec<Value> {
 
 /// Returns the box around all triangles in units of the file; null without any.
 pub fn bounds(scene: &Scene) -> Value {
-    match corners(scene).map(|corner| (corner, corner)).reduce(|(a, b), (c, d)| (a.min(c), b.max(d))) {
-        Some((low, high)) => {
+    match scene.seen_bounds(|_| true).into_iter().reduce(|[a, b], [c, d]| [a.min(c), b.max(d)]) {
+        Some([low, high]) => {
             let corners = [low, high].map(|corner| in_file(scene, corner));
             let largest = corners.map(|corner| corner.abs().max_element()).into_iter().fold(0.0, f64::max);
             let [low, high] = corners.map(|corner| rounded(corner, largest));
@@ -82,12 +83,6 @@ pub fn unsupported(warnings: &[Warning]) -> Vec<Value> {
 
 fn in_file(scene: &Scene, local: Vec3) -> DVec3 {
     scene.centre + local.as_dvec3() * scene.unit()
-}
-
-fn corners(scene: &Scene) -> impl Iterator<Item = Vec3> {
-    scene.meshes.iter().flat_map(|mesh| {
-        mesh.triangles.iter().flatten().filter_map(|i| mesh.positions.get(*i as usize).copied())
-    })
 }
 
 /// Returns coordinates with six digits of the `largest` one: positions are 32-bit.

@@ -44,6 +44,10 @@ pub struct ReadingArgs {
     /// Value of the parameter `$NAME` of a Mitsuba scene, which replaces its `<default>`. May be repeated
     #[arg(short = 'D', long = "define", value_name = "NAME=VALUE", value_parser = definition)]
     define: Vec<(String, String)>,
+    /// Number of triangles up to which instances are copied. Copies are traced faster, and instances take less memory
+    /// [default: 1000000]
+    #[arg(long, value_name = "TRIANGLES")]
+    max_copied: Option<u64>,
     /// Fail, instead of warning, if the scene has an unsupported feature or the image is black
     #[arg(long)]
     pub strict: bool,
@@ -79,6 +83,7 @@ impl ReadingArgs {
                 no_default: self.no_default_light,
             },
             viewpoint: Viewpoint { from: self.look_from, at: self.look_at, fov: self.fov, around },
+            most_copied: self.max_copied,
             up: self.up.map(|axis| match axis {
                 UpAxisName::Y => UpAxis::Y,
                 UpAxisName::Z => UpAxis::Z,

@@ -14,6 +14,9 @@
 //! * Both sides of a triangle are hit. Triangles of zero area are not.
 //! * The floating-point control word (MXCSR) of the calling thread stays unchanged.
 //!
+//! A group of meshes may be stored once and seen at several places ([`PlacedGroup`]). Hits number the seen meshes:
+//! first the meshes without placements, then the meshes of each group, placement by placement.
+//!
 //! Units: `t` is in lengths of the ray's direction, which need not be a unit vector.
 
 #![allow(unsafe_code)]
@@ -23,25 +26,33 @@ mod crossed;
 mod device;
 mod error;
 mod leave;
+mod numbers;
 mod occluder;
 mod packet;
+mod placed;
 mod prepared;
+mod quality;
 mod query;
+mod raw_scene;
 mod ray;
 mod tbb;
 #[cfg(test)]
 mod tests;
+mod triangles;
 mod version;
 mod width;
 
-pub use accel::{Accel, BuildQuality, TriangleMesh};
+pub use accel::Accel;
 pub use device::Device;
 pub use error::EmbreeError;
 pub use leave::leave;
 pub use occluder::{Occluder, Occluders16, TriangleId};
 pub use packet::{Hits16, Rays16};
+pub use placed::PlacedGroup;
 pub use prepared::PreparedRays;
+pub use quality::BuildQuality;
 pub use ray::{Hit, Ray};
 pub use tbb::tbb_version;
+pub use triangles::TriangleMesh;
 pub use version::Version;
 pub use width::Width;

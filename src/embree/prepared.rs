@@ -3,7 +3,7 @@
 //! Rays are stored in the library's layout, copied (a query writes to them) and traced, with no other work.
 
 use super::packet::LaneMask;
-use super::query::{EmbreePacket, intersect_arguments, occluded_arguments};
+use super::query::{EmbreePacket, HitLanes, intersect_arguments, occluded_arguments};
 use super::ray::{ALL_GEOMETRY, OCCLUDING, without_hit};
 use super::{Accel, Hits16, Rays16, Width};
 use embree4_sys as sys;
@@ -145,9 +145,9 @@ fn find<P: EmbreePacket>(packets: &[(LaneMask, P)], accel: &Accel, coherent: boo
     let mut arguments = intersect_arguments(coherent);
     let (mut hits, mut found) = (Hits16::default(), 0);
     for (lanes, packet) in packets {
+        let to = HitLanes { hits: &mut hits, first: 0, numbers: None };
         // SAFETY: the scene is committed, and the mask is 64-byte aligned and of sixteen words.
-        let bits =
-            unsafe { packet.closest_hit(lanes.0.as_ptr(), accel.scene(), &mut arguments, &mut hits, 0) };
+        let bits = unsafe { packet.closest_hit(lanes.0.as_ptr(), accel.scene(), &mut arguments, to) };
         found += u64::from(bits.count_ones());
     }
     std::hint::black_box(&hits);

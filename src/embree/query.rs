@@ -4,6 +4,7 @@
 //! are faster than single rays; unrelated rays are slower. Coherent packets should start at the receivers. A packet
 //! that fans out from the light loses about 1e-4 of its hits.
 
+use super::numbers::PlacedNumbers;
 use super::packet::LANE_IDS;
 use super::ray::{ALL_GEOMETRY, OCCLUDING};
 use super::{Accel, Hits16, Rays16, Width};
@@ -55,8 +56,8 @@ pub(super) trait EmbreePacket: Copy {
         scene: sys::RTCScene,
         arguments: &mut sys::RTCOccludedArguments,
     ) -> u16;
-    /// Traces the lanes of the mask `lanes`, and writes hits to `hits` from `first` on; returns the lanes with hits as
-    /// bits from 0 on.
+    /// Traces the lanes of the mask `lanes`, and writes hits from a lane on; returns the lanes with hits as bits from 0
+    /// on.
     ///
     /// # Safety
     /// See [`EmbreePacket::occluded`].
@@ -65,9 +66,17 @@ pub(super) trait EmbreePacket: Copy {
         lanes: *const i32,
         scene: sys::RTCScene,
         arguments: &mut sys::RTCIntersectArguments,
-        hits: &mut Hits16,
-        first: usize,
+        to: HitLanes,
     ) -> u16;
+}
+
+/// Lanes to which a packet writes its hits.
+pub(super) struct HitLanes<'a> {
+    pub hits: &'a mut Hits16,
+    /// Lane of the packet's lane 0.
+    pub first: usize,
+    /// Numbering of the meshes, if there are groups.
+    pub numbers: Option<&'a PlacedNumbers>,
 }
 
 macro_rules! packet {
@@ -129,8 +138,7 @@ macro_rules! packet {
                 lanes: *const i32,
                 scene: sys::RTCScene,
                 arguments: &mut sys::RTCIntersectArguments,
-                hits: &mut Hits16,
-                first: usize,
+                HitLanes { hits, first, numbers }: HitLanes,
             ) -> u16 {
                 const NONE: [u32; $width] = [sys::RTC_INVALID_GEOMETRY_ID; $width];
                 let mut both = sys::$both {
@@ -161,6 +169,12 @@ macro_rules! packet {
                         hits.v[first + i] = both.hit.v[i];
                         hits.geometry[first + i] = both.hit.geomID[i];
                         hits.primitive[first + i] = both.hit.primID[i];
+                    }
+                }
+                if let Some(numbers) = numbers {
+                    let [instance, place] = [&both.hit.instID[0], &both.hit.instPrimID[0]];
+                    for i in base::math::lanes_in(found as u16) {
+                        hits.geometry[first + i] = numbers.number(both.hit.geomID[i], instance[i], place[i]);
                     }
                 }
                 found as u16
@@ -209,8 +223,8 @@ impl Accel {
                 // SAFETY: the scene is committed; mask, packet and arguments are ours, outlive the call and have the
                 // library's layout (the version is checked). The mask is 64-byte aligned as a whole, and so its parts
                 // of 4 and 8 words as the packets of that width.
-                let bits =
-                    unsafe { packet.closest_hit(part.as_ptr(), self.scene(), &mut arguments, hits, first) };
+                let to = HitLanes { hits: &mut *hits, first, numbers: self.placed_numbers() };
+                let bits = unsafe { packet.closest_hit(part.as_ptr(), self.scene(), &mut arguments, to) };
                 found |= bits << first;
             }
         }

@@ -4,7 +4,8 @@
 
 use crate::Location;
 use crate::attributes::NamedAttribute;
-use glam::{DVec3, Vec2, Vec3, Vec4};
+use crate::local::LocalCoordinates;
+use glam::{DMat4, DVec3, Vec2, Vec3, Vec4};
 use scene::{AttributeValues, DeltaLight, Emission, MaterialId, PixelFilter, Projection, Scene};
 
 /// Width and height in pixels of films without a size.
@@ -74,6 +75,8 @@ pub(crate) struct DraftMesh {
     /// True if the file has no texture coordinates for some triangles.
     pub lacks_uvs: bool,
     pub attributes: Vec<NamedAttribute>,
+    /// Number of the group in whose coordinates the mesh is; `None` for world coordinates.
+    pub group: Option<usize>,
 }
 
 impl DraftMesh {
@@ -101,13 +104,24 @@ fn keep<T>(values: &mut Vec<T>, kept: &[bool]) {
     values.retain(|_| kept.next().copied().unwrap_or(false));
 }
 
+/// Places of meshes that are stored once.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct DraftGroup {
+    /// Transforms to world coordinates.
+    pub placements: Vec<DMat4>,
+    /// Local coordinates of the group's meshes, once they are known.
+    pub coordinates: LocalCoordinates,
+}
+
 /// A scene whose positions are still in world coordinates.
 #[derive(Clone, Debug)]
 pub struct Draft {
     /// Parts that have no position; `meshes` and `lights` in it are empty until recentred.
     pub scene: Scene,
     pub shot: Shot,
+    /// Meshes in world coordinates, and then those of groups in their order.
     pub meshes: Vec<DraftMesh>,
+    pub groups: Vec<DraftGroup>,
     /// Lights and their world positions; the positions inside the lights are not used.
     pub lights: Vec<(DeltaLight, DVec3)>,
     /// Location of each material's description.

@@ -3,6 +3,7 @@
 use crate::decode::DecodedImage;
 use crate::draft::DraftMesh;
 use crate::error::{Location, Log, SceneError};
+use crate::instances::ReadPlan;
 use crate::plan::{Contents, MeshPlan, TextureSource};
 use scene::{Relief, TextureId};
 
@@ -21,7 +22,7 @@ struct MeshesWithoutUvs<'a> {
 /// plan.
 pub(crate) fn report(
     contents: &Contents,
-    meshes: &[Vec<DraftMesh>],
+    meshes: &[ReadPlan],
     images: &[Option<DecodedImage>],
     log: &mut Log,
 ) -> Result<(), SceneError> {
@@ -30,7 +31,7 @@ pub(crate) fn report(
         let textures = textures(contents, plan, mesh);
         textures.into_iter().any(|texture| varies(contents, images, texture))
     };
-    for (plan, meshes) in contents.meshes.iter().zip(meshes) {
+    for (plan, ReadPlan { meshes, .. }) in contents.meshes.iter().zip(meshes) {
         let is_modelled = plan.placement.needs_uv && meshes.iter().all(|mesh| !mesh.uvs.is_empty());
         let lacking = meshes.iter().filter(|mesh| mesh.lacks_uvs && !mesh.triangles.is_empty());
         for mesh in lacking.filter(|mesh| needs(plan, mesh)) {

@@ -23,9 +23,13 @@ pub mod error;
 mod file;
 mod finish;
 mod gltf;
+#[cfg(test)]
+mod instance_tests;
+mod instances;
 mod lacking_uvs;
 mod layers;
 mod lighting;
+mod local;
 mod mesh;
 #[cfg(test)]
 mod mirrored_tests;
@@ -120,7 +124,7 @@ pub fn load(path: &Path, options: &LoadOptions) -> Result<Loaded, SceneError> {
     let posed_frames = frames.min(MAX_FRAMES);
     let camera_names = plan.shot.names.clone();
     let animation_frames = animation_frames.min(MAX_FRAMES).max(plan.shot.path.len());
-    let (mut draft, hash) = plan.realise(&mut log)?;
+    let (mut draft, hash) = plan.realise(options.most_copied.unwrap_or(instances::MOST_COPIED), &mut log)?;
     // A mesh file is opened after its material libraries, and is the main file.
     let sources = &mut draft.scene.sources;
     if let Some(at) = sources.iter().position(|source| source == path) {

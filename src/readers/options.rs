@@ -21,6 +21,8 @@ pub struct LoadOptions {
     pub lighting: Lighting,
     /// Changes of the camera.
     pub viewpoint: Viewpoint,
+    /// Number of triangles up to which instances are copies; `None` for the default.
+    pub most_copied: Option<u64>,
     /// Upward axis for light and camera; `None` stands for z for STL files, and for y otherwise.
     pub up: Option<UpAxis>,
 }
@@ -44,11 +46,12 @@ impl LoadOptions {
 
     /// Returns the hash of a scene with these options; `files` is the hash of its files.
     pub(crate) fn hash(&self, files: u64) -> u64 {
-        let LoadOptions { strict, frame, camera, parameters, lighting, viewpoint, up } = self;
+        let LoadOptions { strict, frame, camera, parameters, lighting, viewpoint, most_copied, up } = self;
         // The frame counts only if a model takes its pose.
         if *self == (LoadOptions { strict: *strict, frame: *frame, ..LoadOptions::default() }) {
             return files;
         }
+        let files = most_copied.map_or(files, |most| fnv1a(format!("{files} {most}").as_bytes()));
         if *lighting == Lighting::default() && *viewpoint == Viewpoint::default() && up.is_none() {
             return fnv1a(format!("{files} {camera:?} {parameters:?}").as_bytes());
         }

@@ -46,7 +46,12 @@ pub struct Motion {
 /// Content of a description without the cameras.
 #[derive(Clone, Debug, Default)]
 pub struct Contents {
+    /// Meshes, each once.
     pub meshes: Vec<MeshPlan>,
+    /// Meshes and groups where they are seen, in the order of the description.
+    pub seen: Vec<SeenPlan>,
+    /// Numbers of the meshes of each group. These meshes are seen through the group alone.
+    pub groups: Vec<Vec<usize>>,
     pub materials: Vec<Material>,
     /// Location of each material's description.
     pub material_places: Vec<Location>,
@@ -62,11 +67,36 @@ pub struct Contents {
 }
 
 impl Contents {
-    /// Adds a mesh.
+    /// Adds a mesh that is seen where its plan places it.
     ///
     /// # Errors
     /// If the mesh does not fit into memory.
     pub fn add_mesh(&mut self, plan: MeshPlan) -> Result<(), SceneError> {
+        self.seen.push(SeenPlan::Mesh(self.meshes.len()));
+        self.add_plan(plan)
+    }
+
+    /// Adds a group without meshes; returns its number.
+    pub fn add_group(&mut self) -> usize {
+        self.groups.push(Vec::new());
+        self.groups.len() - 1
+    }
+
+    /// Adds a mesh to a group.
+    ///
+    /// # Errors
+    /// If the mesh does not fit into memory.
+    pub fn add_member(&mut self, group: usize, plan: MeshPlan) -> Result<(), SceneError> {
+        self.groups[group].push(self.meshes.len());
+        self.add_plan(plan)
+    }
+
+    /// Shows a group at a place. `name` is that of its meshes there, unless they keep their own.
+    pub fn show_group(&mut self, group: usize, to_world: DMat4, name: Option<&str>) {
+        self.seen.push(SeenPlan::Group { group, to_world, name: name.map(str::to_owned) });
+    }
+
+    fn add_plan(&mut self, plan: MeshPlan) -> Result<(), SceneError> {
         let triangles = match &plan.geometry {
             MeshSource::Ready(raw) => raw.triangles.len(),
             MeshSource::Shared(raw) => raw.triangles.len(),
@@ -131,6 +161,21 @@ fn index_of<T: PartialEq>(items: &mut Vec<T>, item: T) -> usize {
         items.push(item);
         items.len() - 1
     })
+}
+
+/// Mesh or group at a place where it is seen.
+#[derive(Clone, Debug)]
+pub enum SeenPlan {
+    /// Number of the mesh.
+    Mesh(usize),
+    Group {
+        /// Number of the group.
+        group: usize,
+        /// Transform from the group's coordinates, to which the plans of its meshes transform.
+        to_world: DMat4,
+        /// Name of its meshes here, unless they keep their own.
+        name: Option<String>,
+    },
 }
 
 /// Plan of a mesh to read or tessellate.

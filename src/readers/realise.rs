@@ -5,16 +5,16 @@
 use crate::budget::{TriangleBudget, lacking};
 use crate::colour_profile;
 use crate::decode::{self, Channel, DecodedImage};
-use crate::draft::{Draft, DraftMesh};
+use crate::draft::Draft;
 use crate::error::{Location, Log, SceneError, Warning};
 use crate::file::{fnv1a, read_file};
+use crate::instances::{self, ReadPlan};
 use crate::lacking_uvs;
 use crate::mesh::{self, RawMesh};
 use crate::plan::{
     Contents, EnvironmentPlan, ImageSource, MeshPlan, MeshSource, ScenePlan, TexturePlan, TextureSource,
 };
 use crate::stand_in::{self, MissingImages};
-use crate::surfaces::finish_mesh;
 use base::math::Rgb;
 use glam::{DMat3, DMat4};
 use rayon::prelude::*;
@@ -28,14 +28,15 @@ const COPY_BYTES: u64 = 12;
 
 /// Use of a file's bytes.
 enum Task<'a> {
-    Mesh(usize, &'a MeshPlan),
+    /// Number and plan of a mesh, and whether it is in a group.
+    Mesh(usize, &'a MeshPlan, bool),
     Texture(usize, &'a TexturePlan, Channel),
     Environment(&'a Location),
 }
 
 enum Realised {
     /// Meshes of a plan, and warnings about them.
-    Meshes(usize, Vec<DraftMesh>, Vec<Warning>),
+    Meshes(usize, ReadPlan, Vec<Warning>),
     Texture(usize, DecodedImage),
     /// A texture that cannot be read.
     MissingTexture(usize, Warning),
@@ -54,7 +55,7 @@ struct ReadFiles {
     /// Hashes of the files' bytes.
     hashes: Vec<u64>,
     /// Meshes of each mesh plan.
-    meshes: Vec<Vec<DraftMesh>>,
+    meshes: Vec<ReadPlan>,
     /// Warnings about each mesh plan, and then about the colours of each image.
     remarks: Vec<Vec<Warning>>,
     /// Image of each texture plan.
@@ -66,7 +67,9 @@ struct ReadFiles {
 
 impl ScenePlan {
     /// Opens every file; returns the draft, and the hash over the bytes of all files.
-    pub fn realise(self, log: &mut Log) -> Result<(Draft, u64), SceneError> {
+    ///
+    /// `most_copied` is the number of triangles up to which instances are copies.
+    pub fn realise(self, most_copied: u64, log: &mut Log) -> Result<(Draft, u64), SceneError> {
         let read = self.read_files()?;
         let ReadFiles { sources, hashes, mut meshes, remarks, mut images, mut missing, environment } = read;
         let mut contents = self.contents;
@@ -75,6 +78,7 @@ impl ScenePlan {
         contents.decode_embedded(&mut images, &mut missing)?;
         stand_in::replace(missing, &mut images, &mut contents.materials, log)?;
         lacking_uvs::report(&contents, &meshes, &images, log)?;
+        let (meshes, groups) = instances::assemble(&contents, meshes, most_copied)?;
         let textures: Textures =
             contents.textures.into_iter().zip(images).filter_map(|(t, p)| texture(t, p)).collect();
         let environment = match contents.environment {
@@ -95,7 +99,8 @@ impl ScenePlan {
         let draft = Draft {
             scene,
             shot: self.shot,
-            meshes: meshes.into_iter().flatten().collect(),
+            meshes,
+            groups,
             lights: contents.lights,
             material_places: contents.material_places,
             attribute_names: contents.attribute_names,
@@ -111,7 +116,7 @@ impl ScenePlan {
         let mut read = ReadFiles {
             sources: self.sources.iter().map(|s| s.0.clone()).collect(),
             hashes: self.sources.iter().map(|s| s.1).collect(),
-            meshes: vec![Vec::new(); self.contents.meshes.len()],
+            meshes: vec![ReadPlan::default(); self.contents.meshes.len()],
             remarks: vec![Vec::new(); self.contents.meshes.len()],
             images: vec![None; self.contents.textures.len()],
             missing: MissingImages::default(),
@@ -177,13 +182,14 @@ impl Contents {
             });
             files[at].1.push(task);
         };
+        let is_member = self.are_members();
         for (i, mesh) in self.meshes.iter().enumerate() {
             match &mesh.geometry {
                 MeshSource::Obj(path, _)
                 | MeshSource::Ply(path)
                 | MeshSource::Stl(path)
                 | MeshSource::Serialized(path, _) => {
-                    add(path, Task::Mesh(i, mesh));
+                    add(path, Task::Mesh(i, mesh, is_member[i]));
                 }
                 MeshSource::Ready(_) | MeshSource::Shared(_) => {}
             }
@@ -207,16 +213,18 @@ impl Contents {
     }
 
     /// Places the meshes that no file holds, and warns of files without triangles.
-    fn place_meshes(&self, meshes: &mut [Vec<DraftMesh>], log: &mut Log) -> Result<(), SceneError> {
-        for (plan, made) in self.meshes.iter().zip(meshes) {
+    fn place_meshes(&self, meshes: &mut [ReadPlan], log: &mut Log) -> Result<(), SceneError> {
+        let is_member = self.are_members();
+        for ((plan, made), is_member) in self.meshes.iter().zip(meshes).zip(is_member) {
+            let ready = |raw: &RawMesh| ReadPlan::new(plan, raw.clone(), is_member, &mut Vec::new());
             match &plan.geometry {
-                MeshSource::Ready(raw) => *made = finish_mesh(plan, raw.clone(), &mut Vec::new()),
-                MeshSource::Shared(raw) => *made = finish_mesh(plan, RawMesh::clone(raw), &mut Vec::new()),
+                MeshSource::Ready(raw) => *made = ready(raw),
+                MeshSource::Shared(raw) => *made = ready(raw),
                 MeshSource::Obj(path, _)
                 | MeshSource::Ply(path)
                 | MeshSource::Stl(path)
                 | MeshSource::Serialized(path, _) => {
-                    if made.iter().all(|mesh| mesh.triangles.is_empty()) {
+                    if made.meshes.iter().all(|mesh| mesh.triangles.is_empty()) {
                         let what = format!("there are no triangles or polygons in {}", path.display());
                         log.warn(&plan.place, what, "the mesh is left out; repair or re-export it")?;
                     }
@@ -255,7 +263,7 @@ fn use_file(path: &Path, tasks: &[Task], budget: &TriangleBudget) -> Result<Used
     let is_texture = |task: &Task| matches!(task, Task::Texture(..));
     // A mesh or an environment that is not there is an error, so its place counts.
     let from = match tasks.iter().find(|task| !is_texture(task)).or(tasks.first()) {
-        Some(Task::Mesh(_, plan)) => &plan.place,
+        Some(Task::Mesh(_, plan, _)) => &plan.place,
         Some(Task::Texture(_, plan, _)) => &plan.place,
         Some(Task::Environment(place)) => place,
         None => return Ok((None, Vec::new())),
@@ -291,7 +299,7 @@ fn use_file(path: &Path, tasks: &[Task], budget: &TriangleBudget) -> Result<Used
 
 fn perform(task: &Task, bytes: &[u8], path: &Path, budget: &TriangleBudget) -> Result<Realised, SceneError> {
     Ok(match task {
-        Task::Mesh(i, plan) => {
+        Task::Mesh(i, plan, is_member) => {
             let mut remarks = Vec::new();
             let raw = match &plan.geometry {
                 MeshSource::Obj(_, selection) => mesh::obj::read(bytes, path, selection, &mut remarks)?,
@@ -304,8 +312,8 @@ fn perform(task: &Task, bytes: &[u8], path: &Path, budget: &TriangleBudget) -> R
                 MeshSource::Shared(raw) => RawMesh::clone(raw),
             };
             budget.take(raw.triangles.len(), &plan.place)?;
-            let meshes = finish_mesh(plan, raw, &mut remarks);
-            Realised::Meshes(*i, meshes, remarks)
+            let read = ReadPlan::new(plan, raw, *is_member, &mut remarks);
+            Realised::Meshes(*i, read, remarks)
         }
         Task::Texture(i, plan, channel) => match decode::decode(bytes, *channel, path, &plan.place) {
             Ok(image) => Realised::Texture(*i, image),

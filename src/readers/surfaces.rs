@@ -1,19 +1,42 @@
-//! Meshes of a plan in world coordinates, with the material of each part.
+//! Parts of the meshes of a plan, with the material of each, and their places.
 
 use crate::attributes::{COLOUR, find};
 use crate::draft::DraftMesh;
 use crate::error::Warning;
 use crate::mesh::material_parts::split_by_material;
-use crate::mesh::{self, Normals, RawMesh};
+use crate::mesh::{self, Normals, Placement, RawMesh};
 use crate::plan::{Appearance, MaterialPlan, MeshPlan, MeshSource};
-use glam::Vec2;
+use glam::{DMat4, Vec2};
 use std::collections::BTreeMap;
 
 /// Maximum number of names that a message lists.
 const MAX_LISTED: usize = 8;
 
-/// Returns the meshes of a plan, one for each material. `remarks` gets warnings about materials that are not there.
-pub(crate) fn finish_mesh(plan: &MeshPlan, raw: RawMesh, remarks: &mut Vec<Warning>) -> Vec<DraftMesh> {
+/// Part of a mesh, in the coordinates of its file, with one material.
+#[derive(Clone, Debug)]
+pub(crate) struct MeshPart {
+    name: String,
+    appearance: Appearance,
+    lacks_uvs: bool,
+    raw: RawMesh,
+}
+
+impl MeshPart {
+    /// Returns the part as the mesh of a scene. `to_world` replaces the transform of its plan, and `name` its own name.
+    pub fn placed(self, plan: &MeshPlan, to_world: DMat4, name: Option<&str>) -> DraftMesh {
+        let placement = Placement { to_world, ..plan.placement };
+        DraftMesh {
+            name: name.map_or(self.name, str::to_owned),
+            material: self.appearance.material,
+            emission: plan.emission.or(self.appearance.emission),
+            lacks_uvs: self.lacks_uvs,
+            ..mesh::place(self.raw, &placement)
+        }
+    }
+}
+
+/// Returns the parts of a plan, one for each material. `remarks` gets warnings about materials that are not there.
+pub(crate) fn parts(plan: &MeshPlan, raw: RawMesh, remarks: &mut Vec<Warning>) -> Vec<MeshPart> {
     if plan.placement.normals != Normals::AsGiven {
         // Smoothing groups mean nothing where all faces are smooth or all are flat, as in Mitsuba.
         remarks.retain(|remark| !remark.what.contains("statement \"s\""));
@@ -43,14 +66,7 @@ pub(crate) fn finish_mesh(plan: &MeshPlan, raw: RawMesh, remarks: &mut Vec<Warni
     let finish = |(name, appearance, mut raw): (String, Appearance, RawMesh)| {
         let is_partial = matches!(plan.geometry, MeshSource::Obj(..)) && fill_uvs(&mut raw.uvs);
         let lacks_uvs = is_partial || raw.uvs.is_empty();
-        let placed = mesh::place(raw, &plan.placement);
-        DraftMesh {
-            name,
-            material: appearance.material,
-            emission: plan.emission.or(appearance.emission),
-            lacks_uvs,
-            ..placed
-        }
+        MeshPart { name, appearance, lacks_uvs, raw }
     };
     parts.into_iter().map(finish).collect()
 }

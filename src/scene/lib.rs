@@ -8,11 +8,13 @@
 
 mod attribute;
 mod camera;
+mod group;
 mod light;
 mod material;
 mod mesh;
 mod parameter;
 mod pixel_filter;
+mod placed;
 mod principled;
 mod projector;
 mod relief;
@@ -25,6 +27,7 @@ use std::path::PathBuf;
 
 pub use attribute::{Attribute, AttributeId, AttributeValues, interpolated};
 pub use camera::{Camera, Cameras, MAX_FRAMES, MAX_SIDE, Projection};
+pub use group::Group;
 pub use light::{DeltaLight, DistantDisc, Environment, EnvironmentMap, SpotImage};
 pub use material::{Blend, Coat, Distribution, Fresnel, Lobe, Material, MaterialId};
 pub use mesh::{Emission, Mesh};
@@ -52,8 +55,10 @@ pub struct Scene {
     pub max_depth: Option<u32>,
     /// True if the camera does not see emitters and the environment directly.
     pub hides_emitters: bool,
-    /// Triangle meshes; a mesh's index is its geometry id.
+    /// Triangle meshes: first those in the scene's coordinates, then the members of groups.
     pub meshes: Vec<Mesh>,
+    /// Groups of meshes that are seen at several places. Their members are the last meshes, in order.
+    pub groups: Vec<Group>,
     /// Materials, indexed by [`MaterialId`].
     pub materials: Vec<Material>,
     /// Textures, indexed by [`TextureId`].
@@ -90,7 +95,7 @@ impl Scene {
         wanted.or(self.max_depth).unwrap_or(u32::MAX)
     }
 
-    /// Returns the number of triangles of all meshes.
+    /// Returns the number of triangles of all stored meshes.
     pub fn triangle_count(&self) -> usize {
         self.meshes.iter().map(|mesh| mesh.triangles.len()).sum()
     }

@@ -4,13 +4,18 @@
 
 use super::material::{Lobe, Material};
 use super::parameter::{Reflectance, Roughness};
-use super::{DeltaLight, Environment, Mesh, Scene};
-use glam::DVec3;
+use super::{DeltaLight, Environment, Group, Mesh, Scene};
 use serde::Serialize;
 use std::fmt;
 
 /// Estimated bytes per triangle of Embree's MEDIUM-quality hierarchy, with its copy of the indices.
 pub const BVH_BYTES_PER_TRIANGLE: usize = 110;
+
+/// Estimated bytes per place of a group: three copies of its transform, and its part of the hierarchy.
+pub const INSTANCE_BYTES: usize = 3 * 48 + 80;
+
+/// Bytes per seen mesh in tables.
+pub const SEEN_MESH_BYTES: usize = 24;
 
 /// Bytes per texel of an environment, and of the cumulative sums over it.
 pub const ENVIRONMENT_TEXEL_BYTES: u64 = 12 + 12 + 8;
@@ -90,8 +95,12 @@ pub struct Requirements {
     pub textures: usize,
     /// Number of attributes of meshes in use, such as vertex colours.
     pub attributes: usize,
-    /// Number of triangles.
+    /// Number of stored triangles.
     pub triangles: usize,
+    /// Number of seen triangles. Triangles of instances count at each place.
+    pub seen_triangles: usize,
+    /// Number of places of groups that are stored once.
+    pub instances: usize,
     /// Number of triangles that emit.
     pub emitting_triangles: usize,
     /// Number of lights: area, point, spot and directional lights, and one for the environment with its discs.
@@ -110,10 +119,9 @@ impl Requirements {
         let mut r = Requirements { textures: scene.textures.len(), ..Requirements::default() };
         let mut used = vec![false; scene.materials.len()];
         let (mut glossy_area, mut specular_area) = (0.0, 0.0);
-        let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
         let mut reflects = false;
-        for mesh in &scene.meshes {
-            let area = area_and_bounds(mesh, &mut low, &mut high);
+        for (mesh, factor) in scene.meshes.iter().zip(scene.area_factors()) {
+            let area = area(mesh) * factor;
             r.area += area;
             r.triangles += mesh.triangles.len();
             r.memory.geometry += geometry_bytes(mesh);
@@ -145,12 +153,12 @@ impl Requirements {
             r.specular_area_share = specular_area / r.area;
         }
         r.area *= scene.unit() * scene.unit();
-        if r.triangles > 0 {
-            r.diagonal = (high - low).length() * scene.unit();
-        }
+        r.diagonal = diagonal(scene) * scene.unit();
+        r.seen_triangles = scene.seen_triangle_count();
+        r.instances = scene.groups.iter().map(|group| group.placements.len()).sum();
         r.count_lights(scene);
         r.trees.indirect = r.lights > 0 && reflects && scene.max_depth.is_none_or(|depth| depth > 2);
-        r.memory.hierarchy = BVH_BYTES_PER_TRIANGLE * r.triangles;
+        r.memory.hierarchy = BVH_BYTES_PER_TRIANGLE * r.triangles + instance_bytes(scene);
         r.memory.pictures = scene.textures.iter().map(|t| t.texels.bytes() / 3 * 4).sum();
         if let Some(Environment::Map(map)) = &scene.environment {
             r.memory.pictures += ENVIRONMENT_TEXEL_BYTES as usize * map.radiance.len();
@@ -212,15 +220,26 @@ fn is_glass(material: &Material) -> bool {
     material.parts().any(|part| part.lobes.iter().any(of_glass))
 }
 
-fn area_and_bounds(mesh: &Mesh, low: &mut DVec3, high: &mut DVec3) -> f64 {
+fn area(mesh: &Mesh) -> f64 {
     let mut double_area = 0.0;
     for t in 0..mesh.triangles.len() {
         let [a, b, c] = mesh.corners(t).map(|p| p.as_dvec3());
         double_area += (b - a).cross(c - a).length();
-        *low = low.min(a).min(b).min(c);
-        *high = high.max(a).max(b).max(c);
     }
     0.5 * double_area
+}
+
+/// Returns the diagonal of the box around all triangles; 0 without any.
+fn diagonal(scene: &Scene) -> f64 {
+    let boxes = scene.seen_bounds(|_| true).into_iter();
+    let whole = boxes.reduce(|[a, b], [low, high]| [a.min(low), b.max(high)]);
+    whole.map_or(0.0, |[low, high]| (high.as_dvec3() - low.as_dvec3()).length())
+}
+
+/// Returns the bytes of instances, in the scene, for hits and in the hierarchy.
+fn instance_bytes(scene: &Scene) -> usize {
+    let of_group = |g: &Group| g.placements.len() * (INSTANCE_BYTES + SEEN_MESH_BYTES * g.meshes.len());
+    scene.groups.iter().map(of_group).sum()
 }
 
 /// Returns the bytes of a mesh in the scene, and of its copy for the hierarchy.
@@ -283,7 +302,14 @@ impl fmt::Display for Requirements {
         if self.attributes > 0 {
             writeln!(f, "mesh attributes  {}", self.attributes)?;
         }
-        writeln!(f, "triangles        {}", self.triangles)?;
+        match self.instances {
+            0 => writeln!(f, "triangles        {}", self.triangles)?,
+            count => writeln!(
+                f,
+                "triangles        {} stored, {} seen in {count} instances and elsewhere",
+                self.triangles, self.seen_triangles
+            )?,
+        }
         writeln!(f, "area, diagonal   {:.6}, {:.6}", self.area, self.diagonal)?;
         let mib = |bytes: usize| bytes as f64 / f64::from(1 << 20);
         write!(

@@ -1,8 +1,8 @@
 //! Means and ranges of textures, over texels or over the surfaces that have an attribute.
 
-use super::Scene;
 use super::attribute::{Attribute, AttributeId};
 use super::texture::{Texels, TextureId};
+use super::{Mesh, Scene};
 use base::math::{Rgb, luminance};
 use glam::DVec3;
 
@@ -12,8 +12,12 @@ impl Scene {
         let add = |(sum, area): (DVec3, f64), (of_mesh, of_its_area): (DVec3, f64)| {
             (sum + of_mesh, area + of_its_area)
         };
+        let of_mesh = |(mesh, areas): (&Mesh, f64)| {
+            let (sum, area) = mesh.integrate_attribute(id);
+            (sum * areas, area * areas)
+        };
         let (sum, area) =
-            self.meshes.iter().map(|mesh| mesh.integrate_attribute(id)).fold((DVec3::ZERO, 0.0), add);
+            self.meshes.iter().zip(self.area_factors()).map(of_mesh).fold((DVec3::ZERO, 0.0), add);
         if area > 0.0 { (sum / area).as_vec3() } else { Rgb::ONE }
     }
 

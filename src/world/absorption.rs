@@ -6,7 +6,7 @@ use scene::Scene;
 /// Absorption coefficients of a scene.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Absorption {
-    /// Coefficient by mesh, 0 for those that do not absorb; empty if no mesh does.
+    /// Coefficient by seen mesh, 0 for those that do not absorb; empty if no mesh does.
     by_mesh: Vec<Rgb>,
 }
 
@@ -18,7 +18,7 @@ impl Absorption {
             scene.meshes.iter().map(|mesh| of(mesh.material.0 as usize).unwrap_or(Rgb::ZERO)).collect();
         match by_mesh.iter().all(|absorption| *absorption == Rgb::ZERO) {
             true => Absorption::default(),
-            false => Absorption { by_mesh },
+            false => Absorption { by_mesh: scene.seen().map(|(mesh, _)| by_mesh[mesh]).collect() },
         }
     }
 

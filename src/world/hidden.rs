@@ -18,7 +18,7 @@ impl World {
     fn behind_emitters(&self, mut ray: Ray) -> Ray {
         for _ in 0..MAX_HIDDEN {
             match self.intersect(&ray) {
-                Some(surface) if self.scene.meshes[surface.mesh as usize].emission.is_some() => {
+                Some(surface) if self.mesh(surface.mesh).emission.is_some() => {
                     ray = beyond(&ray, surface.position, surface.normal, surface.t);
                 }
                 _ => break,

@@ -11,12 +11,16 @@ mod absorption;
 #[cfg(test)]
 mod attribute_tests;
 mod hidden;
+#[cfg(test)]
+mod instance_tests;
+mod instances;
 mod interior;
 pub mod light;
 pub mod material;
 mod meshes;
 mod packet;
 mod relief;
+mod seen;
 pub mod shadow;
 mod sheets;
 mod specular;

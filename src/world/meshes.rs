@@ -1,10 +1,10 @@
 //! Meshes of a scene as input of acceleration structures.
 
 use crate::material::Materials;
-use embree::{Accel, EmbreeError, TriangleMesh};
+use embree::{Accel, BuildQuality, Device, EmbreeError, PlacedGroup, TriangleMesh};
 use scene::Scene;
 
-/// Returns the meshes of a scene as input of an acceleration structure.
+/// Returns the stored meshes of a scene as input of an acceleration structure.
 pub fn triangle_meshes<'a>(scene: &'a Scene, materials: &Materials) -> Vec<TriangleMesh<'a>> {
     let straight: Vec<bool> = materials.averages().map(|average| average.passes_straight()).collect();
     let meshes = scene.meshes.iter().map(|mesh| TriangleMesh {
@@ -13,6 +13,34 @@ pub fn triangle_meshes<'a>(scene: &'a Scene, materials: &Materials) -> Vec<Trian
         occludes: !straight[mesh.material.0 as usize],
     });
     meshes.collect()
+}
+
+/// Builds the structure over all meshes at all places.
+///
+/// # Errors
+/// If Embree cannot build the structure.
+pub(super) fn build(
+    device: &Device,
+    scene: &Scene,
+    materials: &Materials,
+    quality: BuildQuality,
+) -> Result<Accel, EmbreeError> {
+    build_of(device, scene, &triangle_meshes(scene, materials), quality)
+}
+
+/// Builds the structure over the given meshes at the places of a scene.
+fn build_of(
+    device: &Device,
+    scene: &Scene,
+    meshes: &[TriangleMesh],
+    quality: BuildQuality,
+) -> Result<Accel, EmbreeError> {
+    let placed = scene
+        .groups
+        .iter()
+        .map(|group| PlacedGroup { meshes: &meshes[group.meshes.clone()], placements: &group.placements });
+    let groups: Vec<PlacedGroup> = placed.collect();
+    Accel::build_placed(device, &meshes[..scene.own_mesh_count()], &groups, quality)
 }
 
 /// Builds the structure over the surfaces that light passes straight through; `None` if there are none. `whole` is the
@@ -31,5 +59,5 @@ pub(super) fn sheets(
     }
     // Emptied meshes keep the numbers of the others the same.
     meshes.iter_mut().filter(|mesh| mesh.occludes).for_each(|mesh| mesh.triangles = &[]);
-    Accel::build(whole.device(), &meshes).map(Some)
+    build_of(whole.device(), scene, &meshes, BuildQuality::default()).map(Some)
 }

@@ -74,9 +74,12 @@ impl World {
             edges[0].set(i, triangle.edges[0]);
             edges[1].set(i, triangle.edges[1]);
             s.normal.set(i, triangle.normal);
-            let mesh = &self.scene.meshes[s.mesh[i] as usize];
+            let mesh = self.mesh(s.mesh[i]);
             let shading = mesh.normal(&triangle.vertices, s.barycentric.get(i)).unwrap_or(triangle.normal);
             s.shading_normal.set(i, shading);
+        }
+        if self.instances.is_some() {
+            self.place_lanes(&mut s, &mut corner, &mut edges);
         }
         for i in 0..LANES {
             let at = position(corner.get(i), [edges[0].get(i), edges[1].get(i)], s.barycentric.get(i));
@@ -91,15 +94,33 @@ impl World {
         }
         if let Some(reliefs) = &self.reliefs {
             for i in 0..LANES {
-                let (mut frame, triangle) = (s.frame(i), self.triangles.get(s.mesh[i], s.triangle[i]));
-                let mesh = &self.scene.meshes[s.mesh[i] as usize];
-                reliefs.turn(&mut frame, s.mesh[i], mesh, triangle, s.barycentric.get(i));
+                let (mesh, barycentric) = (s.mesh[i], s.barycentric.get(i));
+                let frame = self.with_triangle(mesh, s.triangle[i], |seen, triangle| {
+                    let mut frame = s.frame(i);
+                    reliefs.turn(&mut frame, mesh, seen, triangle, barycentric);
+                    frame
+                });
                 s.tangent.set(i, frame.tangent);
                 s.bitangent.set(i, frame.bitangent);
                 s.shading_normal.set(i, frame.normal);
             }
         }
         s
+    }
+
+    /// Moves the corners, edges and normals of lanes whose meshes are in groups to the scene's coordinates.
+    #[inline(never)]
+    fn place_lanes(&self, s: &mut Surfaces16, corner: &mut Vec3x16, edges: &mut [Vec3x16; 2]) {
+        for i in 0..LANES {
+            let Some(placement) = self.placement(s.mesh[i]) else { continue };
+            corner.set(i, placement.point(corner.get(i)));
+            edges.iter_mut().for_each(|edge| edge.set(i, placement.vector(edge.get(i))));
+            let normal = placement.normal(s.normal.get(i));
+            s.normal.set(i, normal);
+            let vertices = &self.triangles.get(s.mesh[i], s.triangle[i]).vertices;
+            let shading = self.seen(s.mesh[i]).normal(vertices, s.barycentric.get(i));
+            s.shading_normal.set(i, shading.unwrap_or(normal));
+        }
     }
 
     /// Sets the footprints of rays along `direction` that hit `surfaces`, in the lanes of `hit`. `cone` returns the
@@ -125,7 +146,7 @@ impl World {
     pub fn bsdfs(&self, s: &Surfaces16, wo: Vec3x16) -> Bsdfs16<'_> {
         let at = self.textured(s, u16::MAX);
         Bsdfs16::new(wo, |i| {
-            let mesh = &self.scene.meshes[s.mesh[i] as usize];
+            let mesh = self.mesh(s.mesh[i]);
             let uv = || at[i].unwrap_or_else(|| self.coordinates(s, i));
             let covered = || self.covered(s.mesh[i], s.triangle[i], s.footprint.get(i));
             self.materials.at_coordinates(mesh.material, uv, covered, |id| self.attribute(s, i, id))
@@ -135,7 +156,7 @@ impl World {
     /// Returns the lanes whose materials scatter light by densities alone: by no mirrors, no glass and no gaps.
     #[inline]
     pub fn with_densities_alone(&self, mesh: &U32x16) -> u16 {
-        let alone = |mesh: u32| self.materials.has_only_densities(self.scene.meshes[mesh as usize].material);
+        let alone = |mesh: u32| self.materials.has_only_densities(self.material(mesh));
         if *mesh == [mesh[0]; LANES] {
             return if alone(mesh[0]) { u16::MAX } else { 0 };
         }
@@ -146,7 +167,7 @@ impl World {
     /// whose lobes differ from those of the first lane are left out.
     pub fn mean_bsdf(&self, s: &Surfaces16, lanes: u16) -> (Bsdf<'_>, u16) {
         let first = lanes.trailing_zeros() as usize;
-        let id = self.scene.meshes[s.mesh[first] as usize].material;
+        let id = self.material(s.mesh[first]);
         if let Some(bsdf) = self.materials.constant(id) {
             return (bsdf, lanes);
         }
@@ -180,7 +201,7 @@ impl World {
 
     /// Returns the value of an attribute in a lane.
     fn attribute(&self, s: &Surfaces16, lane: usize, id: AttributeId) -> Rgb {
-        let mesh = &self.scene.meshes[s.mesh[lane] as usize];
+        let mesh = self.mesh(s.mesh[lane]);
         mesh.attribute(id, s.triangle[lane] as usize, s.barycentric.get(lane))
     }
 
@@ -188,7 +209,7 @@ impl World {
     #[inline]
     fn coordinates(&self, s: &Surfaces16, lane: usize) -> Vec2 {
         let vertices = &self.triangles.get(s.mesh[lane], s.triangle[lane]).vertices;
-        self.scene.meshes[s.mesh[lane] as usize].uv(vertices, s.barycentric.get(lane))
+        self.mesh(s.mesh[lane]).uv(vertices, s.barycentric.get(lane))
     }
 
     /// Returns the texture coordinates of the surfaces in `lanes` that are textured. It also reads some of their
@@ -197,8 +218,7 @@ impl World {
     fn textured(&self, s: &Surfaces16, lanes: u16) -> [Option<Vec2>; LANES] {
         let (mut at, mut squares) = ([None; LANES], [None; LANES]);
         for i in lanes_in(lanes) {
-            let mesh = &self.scene.meshes[s.mesh[i] as usize];
-            if let Some(texture) = self.materials.texture(mesh.material) {
+            if let Some(texture) = self.materials.texture(self.material(s.mesh[i])) {
                 let uv = self.coordinates(s, i);
                 at[i] = Some(uv);
                 squares[i] = Some((&texture.texels, texture.square(uv)));

@@ -5,6 +5,7 @@
 //! Deviations: the relief changes shading alone, neither outlines nor shadows. A two-sided surface is shaded as seen
 //! from behind if its turned normal faces away from the eye.
 
+use super::instances::SeenAt;
 use super::triangle::Triangle;
 use base::math::{Frame, Rgb};
 use glam::{Vec2, Vec3};
@@ -12,7 +13,7 @@ use scene::{Mesh, Relief, Scene, TextureId, Textures};
 
 /// Reliefs of a scene.
 pub(super) struct Reliefs {
-    /// Turns of the shading frames, by mesh.
+    /// Turns of the shading frames, by seen mesh.
     turns: Vec<Turn>,
     textures: Textures,
 }
@@ -40,25 +41,26 @@ impl Reliefs {
             })
         };
         let turns: Vec<Turn> = scene.meshes.iter().map(of).collect();
+        let turns: Vec<Turn> = scene.seen().map(|(mesh, _)| turns[mesh]).collect();
         let any = turns.iter().any(|turn| *turn != Turn::default());
         any.then(|| Reliefs { turns, textures: scene.textures.clone() })
     }
 
-    /// Turns the shading frame at barycentric weights `b` of a triangle by the relief of its mesh, whose number is
-    /// `index`, and turns x to the direction that its material asks for.
+    /// Turns the shading frame at barycentric weights `b` of a triangle in the scene's coordinates by the relief of its
+    /// mesh, whose number is `index`, and turns x to the direction that its material asks for.
     #[inline]
-    pub fn turn(&self, frame: &mut Frame, index: u32, mesh: &Mesh, triangle: &Triangle, b: Vec2) {
+    pub fn turn(&self, frame: &mut Frame, index: u32, seen: SeenAt, triangle: &Triangle, b: Vec2) {
         let Turn { relief, from_u, direction } = &self.turns[index as usize];
         if let Some(relief) = relief {
             let normal = frame.normal;
-            let turned = self.normal(relief, mesh, triangle, b, normal);
+            let turned = self.normal(relief, seen, triangle, b, normal);
             *frame = Frame::from_normal(turned.and_then(Vec3::try_normalize).unwrap_or(normal));
         }
         if let Some(angle) = from_u {
-            let [along_u, along_v] = axes(mesh, triangle, b, frame.normal);
+            let [along_u, along_v] = axes(seen, triangle, b, frame.normal);
             *frame = Frame::from_normal_and_tangent(frame.normal, along_u);
             let angle = match direction {
-                Some(texture) => angle + self.angle(*texture, mesh.uv(&triangle.vertices, b)),
+                Some(texture) => angle + self.angle(*texture, seen.mesh.uv(&triangle.vertices, b)),
                 None => *angle,
             };
             if angle != 0.0 {
@@ -83,16 +85,16 @@ impl Reliefs {
     fn normal(
         &self,
         relief: &Relief,
-        mesh: &Mesh,
+        seen: SeenAt,
         triangle: &Triangle,
         b: Vec2,
         normal: Vec3,
     ) -> Option<Vec3> {
-        let uv = mesh.uv(&triangle.vertices, b);
+        let uv = seen.mesh.uv(&triangle.vertices, b);
         let level = |v: Vec3| v - normal * normal.dot(v);
         match *relief {
             Relief::Normals { texture, strength, y_along_v } => self.textures.by_id(texture).map(|texture| {
-                let [along_u, along_v] = axes(mesh, triangle, b, normal);
+                let [along_u, along_v] = axes(seen, triangle, b, normal);
                 let local = texture.lookup(uv) * 2.0 - 1.0;
                 let x = level(along_u).normalize_or_zero();
                 let y = normal.cross(x);
@@ -100,7 +102,7 @@ impl Reliefs {
                 x * (local.x * strength) + y * (local.y * strength) + normal * local.z
             }),
             Relief::Heights { texture, scale } => self.textures.by_id(texture).map(|texture| {
-                let [along_u, along_v] = derivatives(mesh, triangle);
+                let [along_u, along_v] = derivatives(seen.mesh, triangle);
                 let slope = texture.luminance_gradient(uv) * scale;
                 let turned = (level(along_u) + normal * slope.x).cross(level(along_v) + normal * slope.y);
                 if turned.dot(triangle.normal) < 0.0 { -turned } else { turned }
@@ -111,10 +113,10 @@ impl Reliefs {
 
 /// Returns the directions of x and y of a texture's frame: those of the mesh's tangents, else the derivatives by u
 /// and v.
-fn axes(mesh: &Mesh, triangle: &Triangle, b: Vec2, normal: Vec3) -> [Vec3; 2] {
-    match mesh.tangent(&triangle.vertices, b).map(|tangent| (tangent.truncate(), tangent.w)) {
+fn axes(seen: SeenAt, triangle: &Triangle, b: Vec2, normal: Vec3) -> [Vec3; 2] {
+    match seen.tangent(&triangle.vertices, b).map(|tangent| (tangent.truncate(), tangent.w)) {
         Some((x, w)) if x != Vec3::ZERO => [x, normal.cross(x) * w],
-        _ => derivatives(mesh, triangle),
+        _ => derivatives(seen.mesh, triangle),
     }
 }
 

@@ -128,11 +128,13 @@ impl World {
     /// Returns the share of the light towards the unit vector `out` that passes the sheet at a hit.
     #[inline]
     fn share_passing(&self, hit: &Hit, out: Vec3, last: &mut Option<LastStraight>) -> Rgb {
-        let mesh = &self.scene.meshes[hit.geometry as usize];
+        let mesh = self.mesh(hit.geometry);
         let barycentric = Vec2::new(hit.u, hit.v);
         let normal = || match self.reliefs.is_some() {
             true => self.surface(hit).frame.normal,
-            false => self.triangles.get(hit.geometry, hit.primitive).shading_normal(mesh, barycentric),
+            false => self.with_triangle(hit.geometry, hit.primitive, |seen, triangle| {
+                seen.shading_normal(triangle, barycentric)
+            }),
         };
         let uv = || mesh.uv(&self.triangles.get(hit.geometry, hit.primitive).vertices, barycentric);
         let attribute = |id| mesh.attribute(id, hit.primitive as usize, barycentric);
@@ -142,9 +144,10 @@ impl World {
 
     /// Returns the parameter at which a segment continues behind the sheet at a hit.
     fn behind(&self, segment: &Ray, hit: &Hit) -> f32 {
-        let triangle = self.triangles.get(hit.geometry, hit.primitive);
-        let position = triangle.position(Vec2::new(hit.u, hit.v));
-        beyond(segment, position, triangle.normal, hit.t).t_near
+        self.with_triangle(hit.geometry, hit.primitive, |_, triangle| {
+            let position = triangle.position(Vec2::new(hit.u, hit.v));
+            beyond(segment, position, triangle.normal, hit.t).t_near
+        })
     }
 
     /// Calls `through` with each lane of `lanes` and its [`World::transmittance`], if there are sheets.

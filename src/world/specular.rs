@@ -14,7 +14,7 @@ const MAX_BOXES: usize = LANES;
 /// The specular surfaces of a scene.
 #[derive(Clone, Debug, Default)]
 pub struct Specular {
-    /// True for meshes with specular lobes, lobes that light passes straight included; empty if there are none.
+    /// True for seen meshes with specular lobes, lobes that light passes straight included; empty if there are none.
     pub(super) meshes: Vec<bool>,
     /// Boxes around meshes with lobes that change the direction of light, as lowest and highest corners.
     pub(super) boxes: Vec<(Vec3, Vec3)>,
@@ -43,11 +43,12 @@ impl Specular {
         let mut meshes: Vec<bool> = scene.meshes.iter().map(is_specular).collect();
         if !meshes.contains(&true) {
             meshes.clear();
+        } else if !scene.groups.is_empty() {
+            meshes = scene.seen().map(|(mesh, _)| meshes[mesh]).collect();
         }
         let boxes = |is_such: &dyn Fn(&Mesh) -> bool| {
-            let such = scene.meshes.iter().filter(|mesh| !mesh.triangles.is_empty() && is_such(mesh));
             let mut boxes = Vec::new();
-            group(such.map(bounds).collect(), MAX_BOXES, &mut boxes);
+            group(scene.seen_bounds(is_such).into_iter().map(enlarged).collect(), MAX_BOXES, &mut boxes);
             boxes
         };
         let delta_boxes = boxes(&by_delta);
@@ -137,11 +138,8 @@ impl Specular {
     }
 }
 
-/// Returns the box around a mesh, enlarged to cover rounding.
-fn bounds(mesh: &Mesh) -> (Vec3, Vec3) {
-    let corners = mesh.triangles.iter().flatten().filter_map(|i| mesh.positions.get(*i as usize));
-    let whole = (Vec3::INFINITY, Vec3::NEG_INFINITY);
-    let (low, high) = corners.fold(whole, |(low, high), p| (low.min(*p), high.max(*p)));
+/// Returns a box that covers rounding, too.
+fn enlarged([low, high]: [Vec3; 2]) -> (Vec3, Vec3) {
     let slack = 1e-5 * low.abs().max(high.abs()).max_element();
     (low - slack, high + slack)
 }

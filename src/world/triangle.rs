@@ -3,13 +3,14 @@
 //! The layout repeats the meshes' positions and takes 64 bytes per triangle. Following the indices of a triangle to its
 //! corners would wait for memory two to four times.
 
+use base::math::Placement;
 use glam::{Vec2, Vec3};
 use scene::texture::uv_scale;
 use scene::{Mesh, Scene};
 
-/// The triangles of all meshes.
+/// The triangles of all stored meshes.
 pub(super) struct Triangles {
-    /// Index of the first record of each mesh.
+    /// Index of the first record of each seen mesh.
     first: Vec<usize>,
     records: Vec<Triangle>,
 }
@@ -33,24 +34,22 @@ pub(super) struct Triangle {
 impl Triangles {
     /// Collects the triangles of a scene.
     pub fn new(scene: &Scene) -> Triangles {
-        let mut first = Vec::with_capacity(scene.meshes.len());
+        let mut starts = Vec::with_capacity(scene.meshes.len());
         let mut records = Vec::with_capacity(scene.triangle_count());
         for mesh in &scene.meshes {
-            first.push(records.len());
+            starts.push(records.len());
             records.extend(mesh.triangles.iter().map(|&vertices| {
                 let [a, b, c] = vertices.map(|i| mesh.positions[i as usize]);
                 let edges = [b - a, c - a];
-                let uv_scale = match mesh.uvs.as_slice() {
-                    [] => 0.0,
-                    uvs => uv_scale(vertices.map(|i| uvs[i as usize]), edges),
-                };
+                let uv_scale = scale_of_uvs(mesh, vertices, edges);
                 Triangle { corner: a, edges, normal: unit_normal(edges), vertices, uv_scale }
             }));
         }
+        let first = scene.seen().map(|(mesh, _)| starts[mesh]).collect();
         Triangles { first, records }
     }
 
-    /// Returns triangle `primitive` of mesh `mesh`.
+    /// Returns triangle `primitive` of the seen mesh `mesh`, in the coordinates in which it is stored.
     #[inline]
     pub fn get(&self, mesh: u32, primitive: u32) -> &Triangle {
         &self.records[self.first[mesh as usize] + primitive as usize]
@@ -58,13 +57,15 @@ impl Triangles {
 }
 
 impl Triangle {
-    /// Returns the unit interpolated normal at barycentric weights `b` of corners 1 and 2; the triangle's own normal if
-    /// the mesh has none or they cancel.
-    #[inline]
-    pub fn shading_normal(&self, mesh: &Mesh, b: Vec2) -> Vec3 {
-        match mesh.normal(&self.vertices, b) {
-            Some(interpolated) => interpolated.try_normalize().unwrap_or(self.normal),
-            None => self.normal,
+    /// Returns the triangle of a mesh at a place.
+    pub fn placed(&self, placement: &Placement, mesh: &Mesh) -> Triangle {
+        let edges = self.edges.map(|edge| placement.vector(edge));
+        Triangle {
+            corner: placement.point(self.corner),
+            edges,
+            normal: placement.normal(self.normal),
+            vertices: self.vertices,
+            uv_scale: scale_of_uvs(mesh, self.vertices, edges),
         }
     }
 
@@ -79,6 +80,14 @@ impl Triangle {
 #[inline(always)]
 pub(super) fn position(corner: Vec3, edges: [Vec3; 2], b: Vec2) -> Vec3 {
     corner + (edges[0] * b.x + edges[1] * b.y)
+}
+
+/// Returns the length in texture coordinates of one unit of length on a triangle; 0 without coordinates.
+fn scale_of_uvs(mesh: &Mesh, vertices: [u32; 3], edges: [Vec3; 2]) -> f32 {
+    match mesh.uvs.as_slice() {
+        [] => 0.0,
+        uvs => uv_scale(vertices.map(|i| uvs[i as usize]), edges),
+    }
 }
 
 /// Returns the unit normal of a triangle from two edges. Very small and very large edges are scaled first.

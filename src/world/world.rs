@@ -1,13 +1,14 @@
 //! A scene prepared for rendering.
 
 use crate::absorption::Absorption;
+use crate::instances::{Instances, SeenAt};
 use crate::light::Emitters;
 use crate::material::{Bsdf, Materials};
-use crate::meshes::{self, triangle_meshes};
+use crate::meshes::{self, build};
 use crate::relief::Reliefs;
 use crate::specular::Specular;
 use crate::surface::Surface;
-use crate::triangle::Triangles;
+use crate::triangle::{Triangle, Triangles};
 use base::math::{Frame, Rgb};
 use embree::{Accel, BuildQuality, Device, EmbreeError, Hit, Ray, TriangleId};
 use glam::{Vec2, Vec3};
@@ -28,6 +29,8 @@ pub struct World {
     /// Extent from which lengths that depend on scale derive: the diagonal of all surfaces, limited by
     /// [`Scene::extent`]; 1 if there are no surfaces.
     pub diagonal: f32,
+    /// Seen meshes, if some are in groups.
+    pub(super) instances: Option<Instances>,
     pub(super) triangles: Triangles,
     /// Reliefs, if there are any.
     pub(super) reliefs: Option<Reliefs>,
@@ -44,7 +47,7 @@ impl World {
     pub fn new(scene: Scene, threads: usize) -> Result<World, EmbreeError> {
         let device = Device::new(threads)?;
         let materials = Materials::new(&scene);
-        let accel = Accel::build(&device, &triangle_meshes(&scene, &materials))?;
+        let accel = build(&device, &scene, &materials, BuildQuality::default())?;
         let diagonal = match accel.bounds() {
             Some((low, high)) if high != low => (high - low).length(),
             _ => 1.0,
@@ -52,7 +55,7 @@ impl World {
         let emitters = Emitters::new(&scene, diagonal);
         let diagonal = scene.extent(diagonal);
         let specular = Specular::new(&scene, &materials);
-        let triangles = Triangles::new(&scene);
+        let (instances, triangles) = (Instances::new(&scene), Triangles::new(&scene));
         let sheets = meshes::sheets(&scene, &materials, &accel)?;
         let reliefs = Reliefs::new(&scene);
         let absorption = Absorption::new(&scene);
@@ -63,6 +66,7 @@ impl World {
             emitters,
             specular,
             diagonal,
+            instances,
             triangles,
             reliefs,
             sheets,
@@ -75,8 +79,7 @@ impl World {
     /// # Errors
     /// If Embree cannot build the structure.
     pub fn rebuild(&mut self, quality: BuildQuality) -> Result<(), EmbreeError> {
-        let meshes = triangle_meshes(&self.scene, &self.materials);
-        self.accel = Accel::build_with(self.accel.device(), &meshes, quality)?;
+        self.accel = build(self.accel.device(), &self.scene, &self.materials, quality)?;
         Ok(())
     }
 
@@ -89,12 +92,16 @@ impl World {
     /// Returns the surface at a hit.
     #[inline]
     pub fn surface(&self, hit: &Hit) -> Surface {
-        let triangle = self.triangles.get(hit.geometry, hit.primitive);
+        self.with_triangle(hit.geometry, hit.primitive, |seen, triangle| self.surface_on(hit, seen, triangle))
+    }
+
+    /// Returns the surface at a hit on a triangle in the scene's coordinates.
+    #[inline(always)]
+    fn surface_on(&self, hit: &Hit, seen: SeenAt, triangle: &Triangle) -> Surface {
         let barycentric = Vec2::new(hit.u, hit.v);
-        let mesh = &self.scene.meshes[hit.geometry as usize];
-        let mut frame = Frame::from_normal(triangle.shading_normal(mesh, barycentric));
+        let mut frame = Frame::from_normal(seen.shading_normal(triangle, barycentric));
         if let Some(reliefs) = &self.reliefs {
-            reliefs.turn(&mut frame, hit.geometry, mesh, triangle, barycentric);
+            reliefs.turn(&mut frame, hit.geometry, seen, triangle, barycentric);
         }
         Surface {
             position: triangle.position(barycentric),
@@ -111,20 +118,20 @@ impl World {
     /// Returns the unit geometric normal of a triangle, on the front by winding.
     #[inline]
     pub fn geometric_normal(&self, mesh: u32, triangle: u32) -> Vec3 {
-        self.triangles.get(mesh, triangle).normal
+        let stored = self.triangles.get(mesh, triangle).normal;
+        self.placement(mesh).map_or(stored, |placement| placement.normal(stored))
     }
 
     /// Returns corner 0 of a triangle, and the edges from there to corners 1 and 2.
     #[inline]
     pub fn corner_and_edges(&self, id: TriangleId) -> (Vec3, [Vec3; 2]) {
-        let triangle = self.triangles.get(id.geometry, id.primitive);
-        (triangle.corner, triangle.edges)
+        self.with_triangle(id.geometry, id.primitive, |_, triangle| (triangle.corner, triangle.edges))
     }
 
     /// Returns the BSDF of a surface at its texture coordinates.
     #[inline]
     pub fn bsdf(&self, s: &Surface) -> Bsdf<'_> {
-        let mesh = &self.scene.meshes[s.mesh as usize];
+        let mesh = self.mesh(s.mesh);
         let uv = || mesh.uv(&self.triangles.get(s.mesh, s.triangle).vertices, s.barycentric);
         let covered = || self.covered(s.mesh, s.triangle, s.footprint);
         let attribute = |id| mesh.attribute(id, s.triangle as usize, s.barycentric);
@@ -167,7 +174,8 @@ impl World {
     /// (see [`super::Surface`]) covers of a triangle's plane.
     #[inline]
     pub(super) fn covered(&self, mesh: u32, primitive: u32, footprint: Vec3) -> f32 {
-        let triangle = self.triangles.get(mesh, primitive);
-        scene::texture::covered(triangle.uv_scale, triangle.normal, footprint)
+        let covered =
+            |triangle: &Triangle| scene::texture::covered(triangle.uv_scale, triangle.normal, footprint);
+        self.with_triangle(mesh, primitive, |_, triangle| covered(triangle))
     }
 }

@@ -23,6 +23,7 @@ mod drawn;
 mod extremes;
 mod glass;
 mod glossy;
+mod instances;
 mod lightcuts;
 mod live;
 mod many_lights;

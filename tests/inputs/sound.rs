@@ -16,6 +16,16 @@ pub fn assert_sound(Loaded { scene, cameras, .. }: &Loaded) {
         assert!(mesh.triangles.iter().flatten().all(|&i| (i as usize) < count));
         assert!((mesh.material.0 as usize) < scene.materials.len());
     }
+    let mut stored = scene.own_mesh_count();
+    for group in &scene.groups {
+        assert_eq!(group.meshes.start, stored);
+        stored = group.meshes.end;
+        for mesh in &scene.meshes[group.meshes.clone()] {
+            assert!(mesh.emission.is_none());
+        }
+        assert!(group.placements.iter().all(|place| place.0.is_finite() && place.determinant() != 0.0));
+    }
+    assert_eq!(stored, scene.meshes.len());
     for texture in &scene.textures {
         assert_eq!(texture.texels.len(), texture.width * texture.height);
         assert!(

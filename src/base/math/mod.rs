@@ -1,10 +1,11 @@
-//! Mathematics shared by all stages: linear colour, directions, cones, orthonormal frames, quadrature, and lanes of
-//! numbers.
+//! Mathematics shared by all stages: linear colour, directions, cones, orthonormal frames, affine transforms,
+//! quadrature, and lanes of numbers.
 
 mod cone;
 mod exp;
 mod frame;
 mod lanes;
+mod placement;
 mod quadrature;
 mod real;
 mod unit;
@@ -16,6 +17,7 @@ pub use lanes::{
     F32x16, LANES, U32x16, Vec2x16, Vec3x16, bits_of, blend, blend_u32, first_lanes, lanes_in, lanes_with,
     mask_of, select,
 };
+pub use placement::Placement;
 pub use quadrature::gauss_legendre;
 pub use real::{F32x8, Real, WIDTH};
 pub use unit::{right_of, unit};

@@ -1,10 +1,11 @@
-//! Growth of time, and of error, with the size of the image, the number of lamps and the number of triangles.
+//! Growth of time, and of error, with the size of the image, and with the numbers of lamps, triangles and instances.
 //!
 //! Images are those of the default method. Along the pixels and triangles, only times are measured. Along the lamps,
 //! errors are measured at equal samples and at equal time, before denoising: many lamps could add noise.
 //!
 //! Units: errors are relative root mean squares, without the worst pixel of a thousand and the reference's noise.
 
+mod forest;
 mod scenes;
 
 use super::plot::{Colour, Series, scatter};
@@ -20,7 +21,7 @@ use world::view::View;
 
 pub(super) const BENCHMARK: Benchmark = Benchmark {
     name: "growth",
-    about: "How time and error grow with the image, with lamps and with triangles",
+    about: "How time and error grow with the image, with lamps, triangles and instances",
     kind: Kind::Study { scenes: Scenes::Files(&["cornell", "nave"]), pixels: [512, 512], run },
 };
 
@@ -32,6 +33,9 @@ const LAMPS: [u32; 4] = [1, 10, 100, 1000];
 
 /// Numbers of triangles.
 const TRIANGLES: [u32; 3] = [100_000, 1_000_000, 10_000_000];
+
+/// Numbers of trees, each of about 100,000 triangles.
+const TREES: [u32; 4] = [10, 100, 1000, 10_000];
 
 /// Caption of the tables.
 const LEGEND: &str = "Times of the default's images. Growth is from the first row to the last and, in brackets, the \
@@ -83,7 +87,7 @@ fn at_equal_time(shot: &Shot) -> Option<f64> {
 }
 
 fn run(study: &Study, files: &[PathBuf]) -> Result<Results, StudyError> {
-    let knobs = study.plan.knobs(&["pixels", "lamps", "triangles"])?;
+    let knobs = study.plan.knobs(&["pixels", "lamps", "triangles", "instances"])?;
     let of = |knob| Question { axis: Axis::Value(knob), ..QUESTION };
     let default = [Candidate::new("default", Method::default())];
     let noisy = default.clone().map(|candidate| Candidate { denoise: false, ..candidate });
@@ -102,6 +106,11 @@ fn run(study: &Study, files: &[PathBuf]) -> Result<Results, StudyError> {
         let scenes = TRIANGLES.iter().map(|&count| dunes(study, count));
         let answer = study.ask(Question { images: &default, ..of("triangles") }, scenes)?;
         section(&mut results, "Triangles of dunes", &answer);
+    }
+    if knobs.contains(&"instances") {
+        let scenes = TREES.iter().map(|&count| woods(study, count));
+        let answer = study.ask(Question { images: &default, ..of("triangles seen") }, scenes)?;
+        section(&mut results, "Trees of a forest", &answer);
     }
     Ok(results)
 }
@@ -129,6 +138,16 @@ fn dunes(study: &Study, count: u32) -> Result<Subject, StudyError> {
     }
     let watch = Stopwatch::start();
     let subject = study.own_subject(&format!("{count} triangles"), &scenes::dunes(count))?;
+    let load = Some(watch.elapsed().cpu_seconds);
+    Ok(Subject { value: subject.triangles as f64, load, ..subject })
+}
+
+/// Writes a forest of a number of trees, and loads it in a measured time.
+fn woods(study: &Study, count: u32) -> Result<Subject, StudyError> {
+    let folder = &study.plan.folder;
+    forest::write(count, folder).map_err(|source| StudyError::File { path: folder.clone(), source })?;
+    let watch = Stopwatch::start();
+    let subject = study.own_subject(&format!("{count} trees"), &forest::forest(count))?;
     let load = Some(watch.elapsed().cpu_seconds);
     Ok(Subject { value: subject.triangles as f64, load, ..subject })
 }

@@ -40,7 +40,7 @@ impl Study<'_> {
         let sources = std::mem::take(&mut scene.sources);
         let hash = hash_debug(&(&*scene, &session.cameras));
         scene.sources = sources;
-        let (name, triangles) = (scene.name.clone(), scene.triangle_count());
+        let (name, triangles) = (scene.name.clone(), scene.seen_triangle_count());
         let view = View::whole(session.cameras.still, self.plan.resolution);
         Ok(Subject { name, hash, triangles, value: 0.0, load: None, session, view })
     }

@@ -2,6 +2,7 @@
 
 mod extremes;
 mod oracle;
+mod placed;
 
 use super::*;
 use oracle::{Soup, Verdict};

@@ -6,8 +6,8 @@
 //! Edges are halved until they are at most a multiple of their distance from the camera. The decision depends on the
 //! ends of an edge only. So triangles that share an edge divide it alike, and no gap opens between them.
 
-use super::recentre::LocalCoordinates;
 use crate::draft::{Draft, DraftMesh};
+use crate::local::LocalCoordinates;
 use glam::DVec3;
 use scene::AttributeValues;
 use std::collections::BTreeMap;
@@ -31,7 +31,9 @@ pub fn divide(draft: &mut Draft, coordinates: &LocalCoordinates) {
         a.distance(b) > MAX_LENGTH * distance(draft.shot.camera.origin, a, b).max(vicinity)
     };
     let mut left = MAX_ADDED;
-    draft.meshes.iter_mut().for_each(|mesh| divide_mesh(mesh, is_long, &mut left));
+    // Meshes of groups lie at other distances at each place.
+    let own = draft.meshes.iter_mut().filter(|mesh| mesh.group.is_none());
+    own.for_each(|mesh| divide_mesh(mesh, is_long, &mut left));
 }
 
 /// Returns the distance of a point from the segment between two others.

@@ -1,5 +1,6 @@
 //! Cameras for scenes without one: they see the whole scene.
 
+use super::corners;
 use crate::draft::Draft;
 use base::math::unit;
 use glam::{DVec2, DVec3};
@@ -19,11 +20,17 @@ pub fn outlook(up: DVec3) -> DVec3 {
     level * elevation.cos() + up * elevation.sin()
 }
 
+/// Returns all vertices, and the corners of boxes around groups at their places.
+fn points(draft: &Draft) -> impl Iterator<Item = DVec3> {
+    let own = draft.meshes.iter().filter(|mesh| mesh.group.is_none());
+    own.flat_map(|mesh| mesh.positions.iter().copied()).chain(corners::placed(draft))
+}
+
 /// Returns the middle of the bounding box of all vertices; the origin without vertices.
 pub fn middle(draft: &Draft) -> DVec3 {
     let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-    for p in draft.meshes.iter().flat_map(|mesh| &mesh.positions).filter(|p| p.is_finite()) {
-        (low, high) = (low.min(*p), high.max(*p));
+    for p in points(draft).filter(|p| p.is_finite()) {
+        (low, high) = (low.min(p), high.max(p));
     }
     if low.cmple(high).all() { 0.5 * low + 0.5 * high } else { DVec3::ZERO }
 }
@@ -36,23 +43,24 @@ pub fn frame(draft: &mut Draft, centre: DVec3) {
         return;
     }
     let [width, height] = draft.shot.resolution.map(f64::from);
-    let camera = &mut draft.shot.camera;
+    let mut camera = draft.shot.camera;
     let tan = (1.0 - MARGIN) * camera.tan_half_x * DVec2::new(1.0, height / width);
     // A point p is within the film's right edge if p·right - x <= tan (p·forward + d), for the camera's offset x and
     // distance d behind the centre. The other edges are alike.
     let (mut high, mut low) = (DVec2::NEG_INFINITY, DVec2::NEG_INFINITY);
-    for p in draft.meshes.iter().flat_map(|mesh| &mesh.positions).map(|p| p - centre) {
+    for p in points(draft).map(|p| p - centre) {
         let (across, depth) = (DVec2::new(p.dot(camera.right), p.dot(camera.up)), p.dot(camera.forward));
         high = high.max(across - tan * depth);
         low = low.max(-across - tan * depth);
     }
     if !(high.is_finite() && low.is_finite()) {
-        camera.origin = centre;
+        draft.shot.camera.origin = centre;
         return;
     }
     let offset = 0.5 * (high - low);
     let distance = (0.5 * (high + low) / tan).max_element();
     camera.origin = centre + camera.right * offset.x + camera.up * offset.y - camera.forward * distance;
+    draft.shot.camera = camera;
 }
 
 #[cfg(test)]

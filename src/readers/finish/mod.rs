@@ -1,6 +1,7 @@
 //! Last steps of reading, common to all formats: repairs, division of large triangles, and local coordinates.
 
 mod coincident;
+mod corners;
 mod dark;
 pub mod divide;
 pub mod framing;

@@ -7,39 +7,31 @@
 //! Very small and very large scenes get another unit of length, a power of two. So no product of lengths leaves the
 //! range of f32.
 
+use super::corners;
 use crate::attributes::NamedAttribute;
-use crate::draft::{Draft, DraftCamera, DraftMesh};
-use base::math::Rgb;
-use glam::{DVec3, Vec3};
+use crate::draft::{Draft, DraftCamera, DraftGroup, DraftMesh};
+use crate::local::LocalCoordinates;
+use glam::{DMat4, DVec3};
 use scene::{
-    Attribute, AttributeId, Camera, Cameras, DeltaLight, MAX_RATIO, Material, Mesh, Projection, Projector,
-    Relief, Scene,
+    Attribute, AttributeId, Camera, Cameras, DeltaLight, Group, MAX_RATIO, Material, Mesh, Projection,
+    Projector, Relief, Scene,
 };
 
 /// Approximate number of corners that are sampled to compute the vicinity.
 const SAMPLED_CORNERS: usize = 1 << 16;
 
+/// Largest distance from the camera to the origin of a scene with instances, in units of its vicinity.
+const MAX_ASIDE: f64 = 64.0;
+
 /// Sizes of scenes that keep their unit, as binary logarithms.
 const UNSCALED_SIZES: std::ops::Range<i32> = -10..24;
-
-/// Local coordinates of a scene.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct LocalCoordinates {
-    /// World position of the local origin.
-    pub centre: DVec3,
-    /// Binary logarithm of the local unit of length in world units.
-    pub exponent: i32,
-    /// Local distance from the camera that contains a tenth of all corners, if the scene is more than [`MAX_RATIO`]
-    /// times larger; else 0.
-    pub vicinity: f32,
-}
 
 impl LocalCoordinates {
     /// Returns the coordinates for a draft.
     pub fn of(draft: &Draft) -> LocalCoordinates {
         let lights = || draft.lights.iter().map(|light| light.1);
         let camera = draft.shot.camera.origin;
-        let Some((low, high)) = bounds(corners(draft)) else {
+        let Some((low, high)) = bounds(corners::hull(draft)) else {
             let others = bounds(lights().chain([camera])).unwrap_or_default();
             return LocalCoordinates {
                 centre: 0.5 * others.0 + 0.5 * others.1,
@@ -61,23 +53,9 @@ impl LocalCoordinates {
         let exponent = size.log2().floor();
         let has_size = exponent.is_finite() && !UNSCALED_SIZES.contains(&(exponent as i32));
         let exponent = if has_size { exponent as i32 } else { 0 };
+        let centre = beside_instances(draft, centre, low, vicinity);
         let coordinates = LocalCoordinates { centre, exponent, vicinity: 0.0 };
         LocalCoordinates { vicinity: (vicinity * coordinates.scale()) as f32, ..coordinates }
-    }
-
-    /// Returns the local length of a world unit.
-    pub fn scale(&self) -> f64 {
-        f64::from(-self.exponent).exp2()
-    }
-
-    /// Returns the local position of a point.
-    pub fn local(&self, world: DVec3) -> Vec3 {
-        ((world - self.centre) * self.scale()).as_vec3()
-    }
-
-    /// Returns the local intensity of a light. Intensities scale with the square of lengths.
-    pub fn local_intensity(&self, intensity: Rgb) -> Rgb {
-        (intensity.as_dvec3() * (self.scale() * self.scale())).as_vec3()
     }
 
     /// Returns a camera in local coordinates.
@@ -106,12 +84,21 @@ impl LocalCoordinates {
     }
 }
 
-/// Returns the corners of all triangles.
-fn corners(draft: &Draft) -> impl Iterator<Item = DVec3> {
-    draft.meshes.iter().flat_map(|mesh| {
-        let used = mesh.triangles.iter().flatten();
-        used.filter_map(|&i| mesh.positions.get(i as usize).copied())
-    })
+/// Returns the origin of a scene with instances: outside of the box from `low` on along its shortest side, as far as
+/// instances reach around their middle. In scenes of a vicinity, it stays near the camera.
+///
+/// Rays and points of an instance round relative to its middle, and offsets of rays relative to the origin. So no point
+/// may be closer to the origin than to its instance's middle.
+fn beside_instances(draft: &Draft, centre: DVec3, low: DVec3, vicinity: f64) -> DVec3 {
+    let reach = corners::reach(draft);
+    if reach == 0.0 {
+        return centre;
+    }
+    let axis = (centre - low).min_position();
+    let mut beside = centre;
+    beside[axis] =
+        if vicinity > 0.0 { centre[axis] - reach.min(MAX_ASIDE * vicinity) } else { low[axis] - reach };
+    beside
 }
 
 fn bounds(points: impl Iterator<Item = DVec3>) -> Option<(DVec3, DVec3)> {
@@ -122,9 +109,8 @@ fn bounds(points: impl Iterator<Item = DVec3>) -> Option<(DVec3, DVec3)> {
 
 /// Returns the distance from `camera` that contains a tenth of the corners.
 fn vicinity(draft: &Draft, camera: DVec3) -> f64 {
-    let count: usize = draft.meshes.iter().map(|mesh| 3 * mesh.triangles.len()).sum();
     let mut distances: Vec<f64> =
-        corners(draft).step_by(count.div_ceil(SAMPLED_CORNERS).max(1)).map(|p| p.distance(camera)).collect();
+        corners::sample(draft, SAMPLED_CORNERS).into_iter().map(|p| p.distance(camera)).collect();
     let tenth = distances.len() / 10;
     *distances.select_nth_unstable_by(tenth, f64::total_cmp).1
 }
@@ -132,7 +118,8 @@ fn vicinity(draft: &Draft, camera: DVec3) -> f64 {
 /// Returns the scene in local coordinates, and its cameras.
 pub(crate) fn recentre(draft: Draft, coordinates: &LocalCoordinates) -> (Scene, Cameras) {
     let scale = coordinates.scale();
-    let local = |p: DVec3| coordinates.local(p);
+    let groups = groups(&draft, coordinates);
+    let of_groups: Vec<LocalCoordinates> = draft.groups.iter().map(|group| group.coordinates).collect();
     let names = draft.attribute_names;
     let attribute = |NamedAttribute { name, values }: NamedAttribute| {
         let number = names.iter().position(|other| *other == name)?;
@@ -140,7 +127,10 @@ pub(crate) fn recentre(draft: Draft, coordinates: &LocalCoordinates) -> (Scene, 
     };
     let mesh = |m: DraftMesh| Mesh {
         name: m.name,
-        positions: m.positions.into_iter().map(local).collect(),
+        positions: {
+            let own = m.group.and_then(|group| of_groups.get(group)).unwrap_or(coordinates);
+            m.positions.into_iter().map(|p| own.local(p)).collect()
+        },
         normals: m.normals,
         uvs: m.uvs,
         tangents: m.tangents,
@@ -157,6 +147,7 @@ pub(crate) fn recentre(draft: Draft, coordinates: &LocalCoordinates) -> (Scene, 
     };
     let place = |(light, position)| place_light(light, position, coordinates);
     let mut scene = Scene {
+        groups,
         meshes: draft.meshes.into_iter().map(mesh).collect(),
         lights: draft.lights.into_iter().map(place).collect(),
         centre: coordinates.centre,
@@ -166,6 +157,20 @@ pub(crate) fn recentre(draft: Draft, coordinates: &LocalCoordinates) -> (Scene, 
     };
     scene.materials.iter_mut().for_each(|material| scale_lengths(material, scale));
     (scene, cameras)
+}
+
+/// Returns the groups that have meshes, with their places in local coordinates.
+fn groups(draft: &Draft, coordinates: &LocalCoordinates) -> Vec<Group> {
+    let range = |number: usize| {
+        let first = draft.meshes.iter().position(|mesh| mesh.group == Some(number))?;
+        let count = draft.meshes[first..].iter().take_while(|mesh| mesh.group == Some(number)).count();
+        Some(first..first + count)
+    };
+    let group = |(number, group): (usize, &DraftGroup)| {
+        let place = |to_world: &DMat4| group.coordinates.placed(to_world, coordinates);
+        Some(Group { meshes: range(number)?, placements: group.placements.iter().map(place).collect() })
+    };
+    draft.groups.iter().enumerate().filter_map(group).collect()
 }
 
 /// Converts heights of reliefs and absorption by length to the local unit.

@@ -2,6 +2,7 @@
 
 use super::camera::FRAMES_PER_SECOND;
 use super::document::GltfFile;
+use super::instancing;
 use super::light;
 use super::mesh;
 use super::mesh::VertexColours;
@@ -15,7 +16,7 @@ use crate::error::SceneError;
 use crate::mesh::{Normals, Placement, RawMesh};
 use crate::plan::{Appearance, Contents, ImageSource, MaterialPlan, MeshPlan, MeshSource};
 use crate::selection::PartSelection;
-use glam::DMat4;
+use glam::{DMat3, DMat4};
 use gltf_json::Index;
 use gltf_json::mesh::Mesh;
 use scene::{Emission, MaterialId, Relief};
@@ -42,6 +43,8 @@ pub(crate) struct ImportOptions {
     pub frame: Option<usize>,
     /// Name of the camera, or number from 1.
     pub camera: Option<String>,
+    /// Number of the group that gets the meshes.
+    pub group: Option<usize>,
 }
 
 impl Default for ImportOptions {
@@ -57,6 +60,7 @@ impl Default for ImportOptions {
             time: None,
             frame: None,
             camera: None,
+            group: None,
         }
     }
 }
@@ -91,6 +95,8 @@ pub(super) struct Importer<'a> {
     pub images: BTreeMap<usize, ImageSource>,
     /// Primitives read so far, by index of the mesh.
     pub meshes: BTreeMap<usize, Vec<Part>>,
+    /// Groups of meshes, by index of the mesh.
+    pub groups: BTreeMap<usize, usize>,
 }
 
 impl Importer<'_> {
@@ -104,7 +110,9 @@ impl Importer<'_> {
         }
         let to_world = self.options.to_world * placed.to_file;
         let light = node.extensions.as_ref().and_then(|extensions| extensions.khr_lights_punctual.as_ref());
-        if let Some(light) = light {
+        if let (Some(_), Some(_)) = (light, self.options.group) {
+            self.report.lacks("lights of a model in a group are not supported", "they are left out", &name);
+        } else if let Some(light) = light {
             let light = document.get(light.light, "light")?;
             let lumens = self.options.lumens_per_watt.unwrap_or(light::lumens_per_watt(document));
             let light = light::read(light, &name, &to_world, lumens, document, &mut self.report)?;
@@ -128,10 +136,20 @@ impl Importer<'_> {
         let (node, mesh) = (&document.root.nodes[placed.node], document.get(index, "mesh")?);
         let weights = self.pose.weights(placed.node, node, mesh);
         let joints = node.skin.map(|skin| skin::joints(document, skin, self.tree)).transpose()?;
+        let morphs = weights.iter().any(|weight| *weight != 0.0);
+        let places = instancing::places(document, placed.node)?;
+        if joints.is_none() && !morphs {
+            let places = places.unwrap_or_else(|| vec![DMat4::IDENTITY]);
+            return places.iter().try_for_each(|place| self.show(index, name, to_world * *place));
+        }
+        if places.is_some() {
+            let lack = "instances of a mesh with a skin or morph targets are not supported";
+            self.report.lacks(lack, "one instance stands at the node", name);
+        }
         for Part { primitive, mut raw, appearance } in self.primitives(index)? {
             let what = primitive_name(mesh, index, primitive);
             let source = &mesh.primitives[primitive];
-            if source.targets.is_some() && weights.iter().any(|weight| *weight != 0.0) {
+            if source.targets.is_some() && morphs {
                 morph::add_targets(Arc::make_mut(&mut raw), document, source, &weights, &what)?;
             }
             let mut to_world = to_world;
@@ -147,23 +165,49 @@ impl Importer<'_> {
                     }
                 }
             }
-            self.add(raw, appearance, name, to_world)?;
+            self.add(self.plan(raw, appearance, name, to_world))?;
         }
         Ok(())
     }
 
-    fn add(
-        &mut self,
-        raw: Arc<RawMesh>,
-        appearance: Appearance,
-        name: &str,
-        to_world: DMat4,
-    ) -> Result<(), SceneError> {
+    /// Adds a mesh at one place.
+    fn add(&mut self, plan: MeshPlan) -> Result<(), SceneError> {
+        match self.options.group {
+            Some(group) => self.contents.add_member(group, plan),
+            None => self.contents.add_mesh(plan),
+        }
+    }
+
+    /// Shows a mesh that may be seen at several places.
+    fn show(&mut self, index: Index<Mesh>, name: &str, to_world: DMat4) -> Result<(), SceneError> {
+        if self.options.group.is_some() || DMat3::from_mat4(to_world).determinant() == 0.0 {
+            for Part { raw, appearance, .. } in self.primitives(index)? {
+                self.add(self.plan(raw, appearance, name, to_world))?;
+            }
+            return Ok(());
+        }
+        let group = match self.groups.get(&index.value()) {
+            Some(group) => *group,
+            None => {
+                let group = self.contents.add_group();
+                self.groups.insert(index.value(), group);
+                for Part { raw, appearance, .. } in self.primitives(index)? {
+                    let plan = self.plan(raw, appearance, name, DMat4::IDENTITY);
+                    self.contents.add_member(group, plan)?;
+                }
+                group
+            }
+        };
+        self.contents.show_group(group, to_world, Some(name));
+        Ok(())
+    }
+
+    fn plan(&self, raw: Arc<RawMesh>, appearance: Appearance, name: &str, to_world: DMat4) -> MeshPlan {
         let (material, emission) = match self.options.material {
             Some(material) => (material, None),
             None => (appearance.material, appearance.emission),
         };
-        self.contents.add_mesh(MeshPlan {
+        MeshPlan {
             place: self.document.place.clone(),
             name: name.to_owned(),
             geometry: MeshSource::Shared(raw),
@@ -176,7 +220,7 @@ impl Importer<'_> {
             },
             material: MaterialPlan::One(material),
             emission: self.options.emission.or(emission),
-        })
+        }
     }
 
     /// True if the material of an appearance, or that which replaces it, knows a direction on its surface.

@@ -4,7 +4,7 @@
 //! The data model is that of the crate `gltf-json`, the lower half of `gltf`. The upper half panics on wrong accessor
 //! types and missing accessors, and follows cycles of nodes. So the checks here look up objects and read accessors.
 //!
-//! Deviations: surfaces have two sides even if the file asks for culling. Instances of a mesh are copies. A warning
+//! Deviations: surfaces have two sides even if the file asks for culling. A warning
 //! names every unsupported feature and the objects that ask for it. Without tangents, the frames of normal maps are
 //! those of the triangles, not those of MikkTSpace.
 //!
@@ -17,6 +17,7 @@ mod container;
 mod document;
 mod draco;
 mod importer;
+mod instancing;
 mod light;
 mod material;
 mod mesh;
@@ -120,6 +121,7 @@ pub fn import(
         surfaces: BTreeMap::new(),
         images: BTreeMap::new(),
         meshes: BTreeMap::new(),
+        groups: BTreeMap::new(),
     };
     for placed in tree.iter().filter(|placed| placed.selected) {
         importer.node(placed)?;

@@ -21,8 +21,10 @@ pub(super) struct Converter<'a> {
     pub default_materials: [Option<MaterialId>; 2],
     /// Spectrum files read, with their hashes.
     pub sources: Vec<(PathBuf, u64)>,
-    /// Number of meshes that instances place, and location of the first instance.
-    pub instances: (usize, Option<Location>),
+    /// Groups read so far, with their numbers.
+    pub groups: Vec<(Rc<Object>, usize)>,
+    /// Number of the group whose meshes are being read.
+    pub into_group: Option<usize>,
 }
 
 impl Converter<'_> {

@@ -3,9 +3,6 @@
 //! `tree` parses the XML. The other modules convert sensors, shapes, BSDFs, textures and emitters to a [`ScenePlan`].
 //! Defaults and conventions are those of Mitsuba 3.9.1 in its `rgb` variants.
 //!
-//! Instances are placed copies of their group's meshes, since occluder caches, emitters and records need one level of
-//! geometry. A copy takes about 100 bytes per triangle. A note reports the number of copies.
-//!
 //! Deviations: features without a counterpart in the scene model are replaced, with a warning each.
 
 mod access;
@@ -47,7 +44,8 @@ pub(super) fn read(path: &Path, options: &LoadOptions, log: &mut Log) -> Result<
         material_of: Vec::new(),
         default_materials: [None; 2],
         sources: Vec::new(),
-        instances: (0, None),
+        groups: Vec::new(),
+        into_group: None,
     };
     converter.scene();
     let rest = converter.report_unused();
@@ -55,7 +53,6 @@ pub(super) fn read(path: &Path, options: &LoadOptions, log: &mut Log) -> Result<
     let integrator = converter.integrator();
     let integrator = converter.log.part(integrator).unwrap_or_default();
     let shot = converter.shot(options.camera.as_deref());
-    converter.report_instances();
     let (contents, read) = (converter.contents, converter.sources);
     let shot = log.conclude(shot)?;
     let stem = stem_of(path);

@@ -7,8 +7,9 @@ use crate::file::stem_of;
 use crate::mesh::{Normals, Placement, shapes};
 use crate::plan::{MaterialPlan, MeshPlan, MeshSource};
 use crate::selection::PartSelection;
-use glam::{DMat4, DVec3};
+use glam::{DMat3, DMat4, DVec3};
 use scene::{MaterialId, TextureId};
+use std::rc::Rc;
 
 impl Converter<'_> {
     /// Adds a shape with the outer transform `outer`: a mesh, or the meshes of a group.
@@ -34,18 +35,39 @@ impl Converter<'_> {
             let what = format!("an instance of a shape \"{}\"", group.plugin);
             return Err(instance.place.wrong(what, "refer to a shapegroup"));
         }
-        let to_world = instance.transform("to_world")?.unwrap_or(DMat4::IDENTITY);
+        let to_world = outer * instance.transform("to_world")?.unwrap_or(DMat4::IDENTITY);
+        let determinant = DMat3::from_mat4(to_world).determinant();
+        if determinant == 0.0 || !determinant.is_finite() {
+            let remedy = "give a scale other than 0 along each axis";
+            return Err(instance.place.wrong("the transform of an instance is singular", remedy));
+        }
         instance.report_unused(self.log)?;
-        let before = self.contents.meshes.len();
-        self.members(group, outer * to_world)?;
-        self.instances.0 += self.contents.meshes.len() - before;
-        self.instances.1.get_or_insert(instance.place.clone());
+        let group = self.group(group)?;
+        self.contents.show_group(group, to_world, None);
         Ok(())
+    }
+
+    /// Returns the number of a group, whose meshes are read at its first instance.
+    fn group(&mut self, group: &Rc<Object>) -> Result<usize, SceneError> {
+        let known = self.groups.iter().find(|(known, _)| Rc::ptr_eq(known, group));
+        if let Some((_, number)) = known {
+            return Ok(*number);
+        }
+        let number = self.contents.add_group();
+        self.groups.push((group.clone(), number));
+        self.into_group = Some(number);
+        let members = self.members(group, DMat4::IDENTITY);
+        self.into_group = None;
+        members.map(|()| number)
     }
 
     fn members(&mut self, group: &Object, outer: DMat4) -> Result<(), SceneError> {
         let members = self.tagged(group, "shape")?;
         group.report_unused(self.log)?;
+        if members.is_empty() {
+            let what = format!("the {} has no shape", group.plugin);
+            return Err(group.place.wrong(what, "add shapes to it, or leave it out"));
+        }
         for member in &members {
             if matches!(member.plugin.as_str(), "shapegroup" | "instance" | "merge") {
                 return Err(member.place.wrong("a group in a group", "instance each by itself"));
@@ -53,14 +75,6 @@ impl Converter<'_> {
             self.shape(member, outer)?;
         }
         Ok(())
-    }
-
-    /// Notes that instances are copies.
-    pub(super) fn report_instances(&mut self) {
-        if let (count, Some(place)) = (self.instances.0, &self.instances.1) {
-            let what = format!("{count} meshes are placed by instances");
-            self.log.note(place, what, "each is a copy, and takes about 100 bytes of memory per triangle");
-        }
     }
 
     /// Returns the source of a mesh, and whether its v counts downwards; `None` for a shape that is not supported.
@@ -137,7 +151,11 @@ impl Converter<'_> {
         });
         let place = shape.place.clone();
         let material = MaterialPlan::One(material);
-        self.contents.add_mesh(MeshPlan { place, name, geometry, placement, material, emission })
+        let plan = MeshPlan { place, name, geometry, placement, material, emission };
+        match self.into_group {
+            Some(group) => self.contents.add_member(group, plan),
+            None => self.contents.add_mesh(plan),
+        }
     }
 
     fn tessellated(&mut self, shape: &Object) {

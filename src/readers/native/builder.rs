@@ -1,5 +1,6 @@
 //! A plan under construction from a native description.
 
+use super::group::NamedGroups;
 use super::source::SourceText;
 use super::text::{MaterialText, SceneText};
 use crate::draft::Shot;
@@ -27,6 +28,8 @@ pub(super) struct SceneBuilder<'a> {
     pub material_texts: &'a [Spanned<MaterialText>],
     /// Cameras of the first glTF model that has some.
     pub model_shot: Option<Shot>,
+    /// Groups by name, and instances of them.
+    pub groups: NamedGroups,
     pub contents: Contents,
 }
 
@@ -52,6 +55,7 @@ impl<'a> SceneBuilder<'a> {
             material_ids: BTreeMap::new(),
             material_texts: &scene.material,
             model_shot: None,
+            groups: NamedGroups::default(),
             contents: Contents::default(),
         })
     }

@@ -51,8 +51,11 @@ impl SceneBuilder<'_> {
             v_down: text.shape.as_deref() == Some("sphere"),
             needs_uv: false,
         };
-        self.contents.add_mesh(MeshPlan { place, name, geometry, placement, material, emission })?;
-        Ok(())
+        let plan = MeshPlan { place, name, geometry, placement, material, emission };
+        match self.member_of(text, &plan.place) {
+            Some(group) => self.contents.add_member(group, plan),
+            None => self.contents.add_mesh(plan),
+        }
     }
 
     /// Returns the file of a glTF model; `None` for other meshes.
@@ -81,6 +84,7 @@ impl SceneBuilder<'_> {
             time: text.time.map(f64::from),
             frame: None,
             camera: None,
+            group: self.member_of(text, place),
         };
         let imported = gltf::import(path, place, &options, &mut self.contents, self.log)?;
         for source in imported.sources {
@@ -90,6 +94,12 @@ impl SceneBuilder<'_> {
         }
         self.model_shot = self.model_shot.take().or(imported.shot);
         Ok(())
+    }
+
+    /// Returns the number of the group whose instances show a mesh, if it is in one.
+    fn member_of(&mut self, text: &MeshText, place: &Location) -> Option<usize> {
+        let name = text.member_of.as_ref()?;
+        Some(self.groups.meshes_of(name, place, &mut self.contents))
     }
 
     fn named_material(&self, text: &MeshText) -> Result<Option<MaterialId>, SceneError> {
@@ -153,7 +163,7 @@ impl SceneBuilder<'_> {
         }
     }
 
-    fn transform(&self, steps: &[Spanned<StepText>]) -> Result<DMat4, SceneError> {
+    pub(super) fn transform(&self, steps: &[Spanned<StepText>]) -> Result<DMat4, SceneError> {
         let mut to_world = DMat4::IDENTITY;
         for step in steps {
             let place = self.file.place(step.span());

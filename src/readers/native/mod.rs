@@ -7,6 +7,8 @@ mod camera;
 mod classic;
 mod classic_maps;
 mod colour;
+mod group;
+mod instance;
 mod light;
 mod material;
 mod mesh;
@@ -46,6 +48,12 @@ pub(super) fn read(path: &Path, log: &mut Log) -> Result<ScenePlan, SceneError> 
         let read = builder.mesh(mesh);
         builder.log.part(read);
     }
+    for instance in &scene.instance {
+        let read = builder.instance(instance);
+        builder.log.part(read);
+    }
+    let shown = builder.show_instances();
+    builder.log.part(shown);
     for light in &scene.light {
         let read = builder.light(light);
         builder.log.part(read);

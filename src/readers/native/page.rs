@@ -1,8 +1,8 @@
 //! Tests of the page `docs/scene-format.md` against the code: keys, types, kinds and defaults.
 
 use super::text::{
-    AttributeText, CameraText, EnvironmentText, KeyText, LightText, MaterialText, MeshText, PathText,
-    SceneText, SkyText, StepText, TextureText,
+    AttributeText, CameraText, EnvironmentText, InstanceText, KeyText, LightText, MaterialText, MeshText,
+    PathText, SceneText, SkyText, StepText, TextureText,
 };
 use crate::constants::conductor_names;
 use crate::{LoadOptions, fnv1a, load};
@@ -84,6 +84,7 @@ fn values(kind: &str) -> (Vec<&'static str>, Vec<&'static str>) {
         "colour or image" => ([colours, images, attributes].concat(), vec!["true", "[1, 2]"]),
         "image" => (images, vec!["true", "0.5"]),
         "number or image" => ([vec!["0.5"], images, attributes].concat(), vec!["true", "[1, 2, 3]"]),
+        "places" => (vec!["[[1,0,0,0, 0,1,0,0, 0,0,1,0]]", "\"a.txt\""], vec!["1", "[1]", "true"]),
         "moment" => (vec!["2024-06-21T12:00:00Z"], vec!["1", "\"noon\""]),
         "table" | "list of tables" | "list of numbers" => (vec![], vec!["true", "1"]),
         other => panic!("the page has no type \"{other}\""),
@@ -202,6 +203,7 @@ fn the_page_lists_every_key_and_its_type() {
     check::<KeyText>("`[camera.path]`: `keys`");
     check::<MeshText>("`[[mesh]]`");
     check::<StepText>("`[[mesh]]`: `transform`");
+    check::<InstanceText>("`[[instance]]`");
     check::<TextureText>("Images");
     check::<AttributeText>("Attributes of meshes");
     check::<EnvironmentText>("`[environment]`");

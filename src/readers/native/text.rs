@@ -20,6 +20,8 @@ pub(super) struct SceneText {
     #[serde(default)]
     pub mesh: Vec<Spanned<MeshText>>,
     #[serde(default)]
+    pub instance: Vec<Spanned<InstanceText>>,
+    #[serde(default)]
     pub light: Vec<Spanned<LightText>>,
     pub environment: Option<Spanned<EnvironmentText>>,
     pub sky: Option<Spanned<SkyText>>,
@@ -273,6 +275,27 @@ pub(super) struct MeshText {
     pub emission_two_sided: bool,
     #[serde(default)]
     pub flip_normals: bool,
+    /// Group whose instances show the mesh.
+    pub member_of: Option<String>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct InstanceText {
+    pub group: Spanned<String>,
+    #[serde(default)]
+    pub transform: Vec<Spanned<StepText>>,
+    pub places: Option<Spanned<PlacesText>>,
+    /// Group whose instances show this instance.
+    pub member_of: Option<String>,
+}
+
+/// Matrices, or a file of them.
+#[derive(Debug, Deserialize)]
+#[serde(untagged, expecting = "expected the name of a file, or a list of lists of 12 or 16 numbers")]
+pub(super) enum PlacesText {
+    File(String),
+    List(Vec<Vec<Number>>),
 }
 
 #[derive(Debug, Deserialize)]

@@ -83,7 +83,7 @@ impl Chooser {
         let paths = path::Settings { seed, max_depth, ..path::Settings::default() };
         let pilot = Pilot::of(world, lights, view, [base, &Method::Path(paths)], control)?;
         let film_pixels = view.window.film_pixel_count();
-        Some(Chooser { triangles: world.scene.triangle_count(), pilot, film_pixels, paths })
+        Some(Chooser { triangles: world.scene.seen_triangle_count(), pilot, film_pixels, paths })
     }
 
     /// Chooses the cheaper of `cache`, with its settings, and paths of the same quality, on a film of a minimum size.

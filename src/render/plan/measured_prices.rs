@@ -29,7 +29,7 @@ pub struct MeasuredPrice {
 ///
 /// Prices of denoising are left out if the library is missing.
 pub fn measure_prices(world: &World, view: &View, control: &Control) -> Option<Vec<MeasuredPrice>> {
-    let prices = ScenePrices::new(world.scene.triangle_count());
+    let prices = ScenePrices::new(world.scene.seen_triangle_count());
     let render = |method: Method| {
         let output = method.render(world, &LightStore::default(), view, control);
         output.complete.then_some(output)

@@ -91,7 +91,7 @@ impl<'a> Finish<'a> {
     /// Returns the quality of denoising for an image.
     fn quality(&self, output: &Output) -> Quality {
         let pixels = self.view.window.pixel_count();
-        let work = || ScenePrices::new(self.world.scene.triangle_count()).time(&output.work);
+        let work = || ScenePrices::new(self.world.scene.seen_triangle_count()).time(&output.work);
         self.quality.unwrap_or_else(|| effort::for_image(pixels, work()))
     }
 

@@ -26,9 +26,8 @@ impl LitSphere {
             return LitSphere(None);
         }
         let (mut low, mut high) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
-        for position in world.scene.meshes.iter().filter(|m| m.emission.is_none()).flat_map(|m| &m.positions)
-        {
-            (low, high) = (low.min(*position), high.max(*position));
+        for [a, b] in world.scene.seen_bounds(|mesh| mesh.emission.is_none()) {
+            (low, high) = (low.min(a), high.max(b));
         }
         let (centre, radius) = (0.5 * (low + high), 0.5 * (high - low).length());
         if target.core < target.radius && !(radius < target.core) {

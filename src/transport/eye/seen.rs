@@ -189,7 +189,7 @@ impl PixelFeatures {
         self.surfaces += 1;
         let depth = vertex.distance * cos;
         if self.nearest.is_none_or(|nearest| depth < nearest.depth) {
-            let material = world.scene.meshes[surface.mesh as usize].material.0;
+            let material = world.material(surface.mesh).0;
             self.nearest = Some(Nearest { depth, material, mesh: surface.mesh });
         }
     }

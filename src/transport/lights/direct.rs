@@ -31,7 +31,7 @@ pub fn direct_vpls(world: &World, settings: &LightPassSettings, control: &Contro
     let mut oriented = VplSet::new(VplKind::Oriented, Origin::Direct);
     let total_power: f64 = emitters.areas.iter().map(|a| f64::from(a.power)).sum();
     let min_count = (MIN_OF_ALL / emitters.areas.len().max(1) as u32).clamp(1, MIN_PER_LIGHT);
-    let mut sizes = vec![0; world.scene.meshes.len()];
+    let mut sizes = vec![0; world.scene.seen().count()];
     for (i, light) in emitters.areas.iter().enumerate() {
         let share = f64::from(light.power) / total_power;
         let count = ((share * f64::from(settings.direct)).ceil() as u32).max(min_count);

@@ -117,7 +117,7 @@ impl FirstHits16<'_> {
     /// Returns the lanes that see about what the lane `first` sees, whatever their BSDFs.
     fn like(&self, world: &World, first: usize) -> u16 {
         let FirstHits16 { surfaces: s, directions, pixel, spacing } = *self;
-        let material = |mesh: u32| world.scene.meshes[mesh as usize].material;
+        let material = |mesh: u32| world.material(mesh);
         let id = material(s.mesh[first]);
         let min_cos = min_cos(world, id);
         let (position, normal) = (s.position.get(first), s.shading_normal.get(first));

@@ -34,7 +34,7 @@ pub struct Emitters {
     pub deltas: Vec<DeltaEmitter>,
     /// The environment with the discs before it; `None` if black.
     pub environment: Option<EnvironmentLight>,
-    /// Index of the area light of each mesh.
+    /// Index of the area light of each seen mesh.
     light_of_mesh: Vec<u32>,
     /// Spheres around the emitting meshes: centre and squared radius.
     spheres: Vec<(Vec3, f32)>,
@@ -47,8 +47,9 @@ impl Emitters {
     /// Collects the emitters of a scene whose bounds have the given diagonal.
     pub fn new(scene: &Scene, diagonal: f32) -> Emitters {
         let areas: Vec<AreaLight> =
-            (0..scene.meshes.len() as u32).filter_map(|i| AreaLight::new(scene, i)).collect();
-        let mut light_of_mesh = vec![NO_LIGHT; scene.meshes.len()];
+            (0..scene.own_mesh_count() as u32).filter_map(|i| AreaLight::new(scene, i)).collect();
+        // Meshes in groups do not emit.
+        let mut light_of_mesh = vec![NO_LIGHT; scene.seen().count()];
         for (i, light) in areas.iter().enumerate() {
             light_of_mesh[light.mesh as usize] = i as u32;
         }

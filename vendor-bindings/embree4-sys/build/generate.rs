@@ -12,7 +12,7 @@ const FUNCTIONS: &[&str] = &[
     "rtcGetErrorString",
     "rtcSetDeviceErrorFunction",
     "rtcSetScene(BuildQuality|Flags)",
-    "rtcSetGeometry(Mask|BuildQuality)",
+    "rtcSetGeometry(Mask|BuildQuality|InstancedScene|Transform)",
     "rtcSetNewGeometryBuffer",
     "rtcAttachGeometryByID",
     "rtcGetSceneBounds",

@@ -755,6 +755,13 @@ unsafe extern "C" {
     pub fn rtcCommitGeometry(geometry: RTCGeometry);
     pub fn rtcSetGeometryMask(geometry: RTCGeometry, mask: ::core::ffi::c_uint);
     pub fn rtcSetGeometryBuildQuality(geometry: RTCGeometry, quality: RTCBuildQuality);
+    pub fn rtcSetGeometryInstancedScene(geometry: RTCGeometry, scene: RTCScene);
+    pub fn rtcSetGeometryTransform(
+        geometry: RTCGeometry,
+        timeStep: ::core::ffi::c_uint,
+        format: RTCFormat,
+        xfm: *const ::core::ffi::c_void,
+    );
     pub fn rtcSetNewGeometryBuffer(
         geometry: RTCGeometry,
         type_: RTCBufferType,

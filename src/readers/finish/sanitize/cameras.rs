@@ -3,7 +3,7 @@
 use super::reach::{IN_REACH, MAX_COORDINATE, is_within_reach};
 use crate::draft::DraftCamera;
 use crate::error::{Location, SceneError};
-use crate::finish::recentre::LocalCoordinates;
+use crate::local::LocalCoordinates;
 use scene::{PixelFilter, Projection};
 
 /// Maximum width of a pixel filter, in pixels.

@@ -5,7 +5,7 @@ use super::report::SanitizeReport;
 use crate::draft::Draft;
 use crate::error::{Location, SceneError};
 use crate::finish::dark::is_dark_emission;
-use crate::finish::recentre::LocalCoordinates;
+use crate::local::LocalCoordinates;
 use base::math::Rgb;
 use scene::{DeltaLight, Environment, Texture, TextureId};
 

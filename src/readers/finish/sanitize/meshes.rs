@@ -3,7 +3,7 @@
 use super::reach::MAX_COORDINATE;
 use super::report::SanitizeReport;
 use crate::draft::DraftMesh;
-use crate::finish::recentre::LocalCoordinates;
+use crate::local::LocalCoordinates;
 use glam::{DVec3, Vec3};
 use scene::AttributeValues;
 

@@ -11,20 +11,22 @@ mod cameras;
 mod lights;
 mod materials;
 mod meshes;
+mod places;
 mod reach;
 mod report;
 
 use super::coincident::drop_coincident_emitters;
 use super::framing;
-use super::recentre::LocalCoordinates;
 use crate::draft::Draft;
 use crate::error::{Log, SceneError};
+use crate::local::LocalCoordinates;
 use attributes::repair_attributes;
 use cameras::check_camera;
 use glam::{Vec2, Vec4};
 use lights::check_lights;
 use materials::check_material;
 use meshes::{drop_rounded, drop_unusable, repair_normals, use_all_vertices};
+use places::{drop_places, set_coordinates};
 use std::iter;
 
 pub use report::SanitizeReport;
@@ -42,11 +44,13 @@ pub(crate) fn sanitize(
         drop_unusable(mesh, &mut report);
     }
     drop_coincident_emitters(draft, &draft.main_file(), log)?;
+    set_coordinates(draft);
     let coordinates = LocalCoordinates::of(draft);
-    let (mut lost, mut triangles) = (0, 0);
+    let (mut lost, mut triangles) = drop_places(draft, &coordinates, &mut report);
     for mesh in &mut draft.meshes {
+        let group = mesh.group.and_then(|group| draft.groups.get(group));
         triangles += mesh.triangles.len();
-        lost += drop_rounded(mesh, &coordinates, &mut report);
+        lost += drop_rounded(mesh, group.map_or(&coordinates, |group| &group.coordinates), &mut report);
         use_all_vertices(mesh);
         repair_normals(mesh, &mut report);
         let bad_uvs = mesh.uvs.iter_mut().filter(|uv| !uv.is_finite());

@@ -1,6 +1,6 @@
 //! Coordinates that the renderer can hold.
 
-use crate::finish::recentre::LocalCoordinates;
+use crate::local::LocalCoordinates;
 use glam::DVec3;
 
 /// Maximum coordinate, in the unit of the files and in the local unit.

@@ -34,6 +34,7 @@ fn draft(meshes: Vec<DraftMesh>, materials: Vec<Material>) -> Draft {
         scene: Scene { name: "t".into(), sources: vec!["t.toml".into()], materials, ..Scene::default() },
         shot: Shot { camera, names: vec![], fits: false, path: vec![], resolution: [1, 1], crop: None },
         meshes,
+        groups: vec![],
         lights: vec![],
         material_places: vec![],
         attribute_names: vec![],

@@ -11,6 +11,7 @@ const CLEAR: [u8; 4] = [255, 255, 255, 0];
 pub fn all() -> Vec<(&'static str, Model, &'static [&'static str])> {
     vec![
         ("instances", instances(), &[]),
+        ("instancing", instancing(), &[]),
         ("textures", textures(), &["different wrap modes"]),
         ("emission", emission(), &[]),
         ("lights", lights(), &[]),
@@ -52,6 +53,20 @@ fn instances() -> Model {
     model.node(json!({ "name": "pair", "children": [left, right], "rotation": [0, half, 0, half] }));
     let matrix = json!([2, 0, 0, 0, 0, 2, 0, 0, 0, 0, 2, 0, 0, 10, 0, 1]);
     model.node(json!({ "mesh": mesh, "name": "big", "matrix": matrix }));
+    model
+}
+
+/// Returns a mesh with two instances by the extension.
+fn instancing() -> Model {
+    let mut model = Model::new();
+    let mesh = model.square(None);
+    let translations = model.floats(&[[-2.0, 0.0, 0.0], [2.0, 1.0, -1.0]]);
+    let rotations = model.floats(&[[0.0, 0.6, 0.0, 0.8], [0.0, 0.0, 0.0, 1.0]]);
+    let scales = model.floats(&[[1.0, 2.0, 1.0], [-1.0, 1.0, 1.0]]);
+    let attributes = json!({ "TRANSLATION": translations, "ROTATION": rotations, "SCALE": scales });
+    model.push("extensionsUsed", json!("EXT_mesh_gpu_instancing"));
+    let extensions = json!({ "EXT_mesh_gpu_instancing": { "attributes": attributes } });
+    model.node(json!({ "mesh": mesh, "name": "row", "extensions": extensions }));
     model
 }
 

@@ -164,17 +164,23 @@ fn what_is_wrong_is_named_with_a_remedy() {
     says(load_bytes("m.gltf", b"{\n\"asset\": [\n}").map(|_| ()).unwrap_err().to_string(), "m.gltf:3");
 }
 
-/// A small file has many triangles: a hundred thousand instances of a mesh of ten thousand triangles.
+/// A small file has many triangles: a hundred thousand instances of a mesh of ten thousand triangles. Instances that
+/// emit are copies.
 #[test]
-fn instances_beyond_memory_are_an_error() {
+fn copies_beyond_memory_are_an_error_and_instances_are_not() {
     let mut model = Model::new();
-    let mesh = model.square(None);
+    let material = model.push("materials", json!({}));
+    let mesh = model.square(Some(material));
     let corners: Vec<u16> = (0..30_000).map(|i| i % 4).collect();
     let indices = model.indices(&corners);
     model.json["meshes"][mesh]["primitives"][0]["indices"] = json!(indices);
     let nodes: Vec<Value> = (0..100_000).map(|_| json!({ "mesh": mesh })).collect();
     model.json["scenes"][0]["nodes"] = (0..nodes.len()).collect();
     model.json["nodes"] = Value::Array(nodes);
+    let scene = load_bytes("m.glb", &model.glb()).unwrap().scene;
+    assert_eq!((scene.triangle_count(), scene.groups[0].placements.len()), (10_000, 100_000));
+    assert_eq!(scene.seen_triangle_count(), 1_000_000_000);
+    model.json["materials"][material]["emissiveFactor"] = json!([1, 1, 1]);
     let message = load_bytes("m.glb", &model.glb()).map(|_| ()).unwrap_err().to_string();
     assert!(message.contains("triangles that fit into memory"), "{message}");
 }

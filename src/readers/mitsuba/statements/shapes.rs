@@ -65,7 +65,7 @@ pub(in crate::mitsuba) const SHAPES: &[Statement] = &[
     read("cylinder: flip_normals", ""),
     idle("cylinder: silhouette_sampling_weight", "for derivatives"),
     read("shapegroup", "seen through its instances"),
-    read("instance", "a placed copy"),
+    read("instance", "a group at a place"),
     read("instance: to_world", ""),
     read("merge", "its members"),
     named("bsplinecurve", "left out"),
