@@ -14,6 +14,7 @@ use super::short_help::shortened;
 use super::values::{
     Bytes, Crop, ImageFormat, Loudness, ProgressMode, Resolution, counted, feature, q_scale,
 };
+use super::views_args::ViewsArgs;
 use super::{talk, threads, version};
 use clap::{Arg, ArgGroup, Args, CommandFactory, FromArgMatches, Parser, Subcommand, ValueEnum};
 use render::session::Feature;
@@ -71,7 +72,9 @@ pub enum Command {
     Render(Box<RenderArgs>),
     /// Render the frames of a walk, the camera animation of a scene
     Walk(Box<WalkArgs>),
-    /// Render the images and walks that job files list
+    /// Render many cameras of one scene, which share what does not depend on the camera
+    Views(Box<ViewsArgs>),
+    /// Render the images, walks and views that job files list
     Batch(BatchArgs),
     /// Print what a scene contains and requires
     Info(InfoArgs),
@@ -252,7 +255,7 @@ pub struct WalkArgs {
 #[derive(Debug, Args)]
 #[command(after_long_help = exit::HELP)]
 pub struct BatchArgs {
-    /// Job files (.toml). Each lists images and walks, with the options of their commands
+    /// Job files (.toml). Each lists images, walks and lists of views, with the options of their commands
     #[arg(required = true)]
     pub jobs: Vec<PathBuf>,
     /// Print the number, scene and output of each entry, and render nothing

@@ -1,4 +1,4 @@
-//! `lightsplat batch`: renders the images and walks of job files.
+//! `lightsplat batch`: renders the images, walks and views of job files.
 //!
 //! Each scene is read once. A failure of one entry does not stop the others.
 
@@ -9,7 +9,7 @@ use super::exit::{self, Failure};
 use super::job::RenderJob;
 use super::values::Loudness;
 use super::walk_job::WalkJob;
-use super::{batch_outputs, interrupt, opened, render, talk, threads, walk};
+use super::{batch_outputs, interrupt, opened, render, talk, threads, views, walk};
 use ::render::session::Opened;
 use ::render::walk::FrameList;
 use anyhow::{Context, anyhow};
@@ -48,10 +48,11 @@ pub fn run(args: BatchArgs) -> Result<(), Failure> {
     pool.install(|| batch.render(entries))
 }
 
-/// Prints the number, the scene and the output of each entry.
+/// Prints the number, the scene and the output of each entry, and the views of a chunk.
 fn list(entries: &[JobEntry]) -> Result<(), Failure> {
     let line = |(i, entry): (usize, &JobEntry)| {
-        format!("{}\t{}\t{}\n", i + 1, entry.scene.display(), entry.output.display())
+        let part = entry.part.as_ref().map_or(String::new(), |views| format!("\tviews {views}"));
+        format!("{}\t{}\t{}{part}\n", i + 1, entry.scene.display(), entry.output.display())
     };
     talk::print(&entries.iter().enumerate().map(line).collect::<String>())
 }
@@ -83,7 +84,7 @@ struct BatchRun {
     failed: usize,
 }
 
-/// A checked entry: an image or a walk.
+/// A checked entry: an image, or a walk or the views of a list.
 enum Job {
     Still(Box<RenderJob>),
     Walk(Box<WalkJob>),
@@ -179,8 +180,13 @@ impl BatchRun {
                 args.picture.dry_run |= self.args.dry_run;
                 Ok(Job::Walk(Box::new(WalkJob::new(*args)?)))
             }
+            Command::Views(mut args) => {
+                args.picture.progress = self.args.progress;
+                args.picture.dry_run |= self.args.dry_run;
+                Ok(Job::Walk(Box::new(views::job(*args)?)))
+            }
             _ => Err(Failure::usage(anyhow!(
-                "{}: this entry is neither an image nor a walk",
+                "{}: this entry is no image, walk or list of views",
                 entry.output.display()
             ))),
         }

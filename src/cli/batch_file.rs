@@ -1,14 +1,15 @@
-//! Job files of batches: images and walks in TOML, each with the options of its command.
+//! Job files of batches: images, walks and views in TOML, each with the options of its command.
 //!
-//! An entry becomes the arguments of `walk` if the name of its file has a placeholder for a number and no `frame` is
-//! given, else of `render`. So a job file may hold every option of these commands, with the same meaning.
+//! An entry becomes the arguments of `views` if it names a list of views, and of `walk` if the name of its file has a
+//! placeholder for a number and no `frame` is given. Other entries become arguments of `render`. So a job file may hold
+//! every option of these commands, with the same meaning. Views in chunks are one entry per chunk.
 
 use super::args::{Cli, Command};
 use super::exit::Failure;
 use super::walk_job::FIRST_POSE;
 use anyhow::{Context, anyhow};
 use clap::error::{ContextKind, ContextValue};
-use readers::{EnvironmentChoice, LoadOptions, read_regular};
+use readers::{EnvironmentChoice, LoadOptions, ViewList, read_regular};
 use render::walk::FileNames;
 use serde::Deserialize;
 use std::collections::BTreeMap;
@@ -52,7 +53,10 @@ struct PictureTable {
     options: Table,
 }
 
-/// An image or a walk of a batch.
+/// Option that names a list of views.
+const VIEWS: &str = "views";
+
+/// An image, a walk or the views of a batch.
 #[derive(Clone, Debug)]
 pub struct JobEntry {
     /// Scene file.
@@ -63,6 +67,8 @@ pub struct JobEntry {
     pub output: PathBuf,
     /// Job file, and the line of the output in it.
     pub place: String,
+    /// Views of a chunk, first and last, if the entry is one.
+    pub part: Option<String>,
     /// Lines of the keys in the job file.
     lines: BTreeMap<String, usize>,
     file: PathBuf,
@@ -140,24 +146,36 @@ pub fn read(path: &Path, more: &[&str]) -> Result<Vec<JobEntry>, Failure> {
                 reading: LoadOptions::default(),
                 output: folder.join(picture.output),
                 place: format!("{}, line {line}", path.display()),
+                part: None,
                 lines,
                 file: path.to_owned(),
                 arguments: Vec::new(),
             };
-            entry.with(folder, &options, more)
+            entry.with(folder, &options, more)?.in_chunks()
         })
-        .collect()
+        .collect::<Result<Vec<_>, Failure>>()
+        .map(|entries| entries.concat())
 }
 
 impl JobEntry {
     /// Adds options to the entry. Those that name files are relative to `folder`.
     fn with(mut self, folder: &Path, options: &Table, more: &[&str]) -> Result<JobEntry, Failure> {
         let has_place = self.output.to_str().is_some_and(|name| name.parse::<FileNames>().is_ok());
-        let is_walk = has_place && !options.contains_key("frame");
-        let command = if is_walk { "walk" } else { "render" };
+        let views = match options.get(VIEWS) {
+            None => None,
+            Some(Value::String(list)) => Some(folder.join(list)),
+            Some(other) => return Err(self.wrong(VIEWS, &format!("`{VIEWS}` cannot be {other}"))),
+        };
+        let command = match &views {
+            Some(_) => "views",
+            None if has_place && !options.contains_key("frame") => "walk",
+            None => "render",
+        };
         let mut arguments: Vec<OsString> = ["lightsplat", command].map(OsString::from).into();
-        arguments.extend([self.scene.clone().into(), "-o".into(), self.output.clone().into()]);
-        for (name, value) in options {
+        arguments.push(self.scene.clone().into());
+        arguments.extend(views.map(OsString::from));
+        arguments.extend(["-o".into(), self.output.clone().into()]);
+        for (name, value) in options.iter().filter(|(name, _)| *name != VIEWS) {
             if OF_THE_BATCH.contains(&name.as_str()) {
                 let remedy = format!("`{name}` is an option of the batch: use lightsplat batch --{name}");
                 return Err(self.wrong(name, &remedy));
@@ -182,9 +200,28 @@ impl JobEntry {
                 args.picture.reading.options_at(&args.scene, args.frame.map(NonZeroUsize::get))
             }
             Command::Walk(args) => args.picture.reading.options_at(&args.scene, Some(FIRST_POSE)),
+            Command::Views(args) => args.picture.reading.options_at(&args.scene, None),
             _ => LoadOptions::default(),
         };
         Ok(self)
+    }
+}
+
+impl JobEntry {
+    /// Returns an entry per chunk of views, if the entry has chunks of all its views.
+    fn in_chunks(self) -> Result<Vec<JobEntry>, Failure> {
+        let Command::Views(args) = self.command()? else { return Ok(vec![self]) };
+        let (Some(size), None) = (args.chunk, args.only) else { return Ok(vec![self]) };
+        // The check of the entry reports a list that cannot be read.
+        let Ok(list) = ViewList::read(&args.cameras, false) else { return Ok(vec![self]) };
+        let (count, size) = (list.file_names().len(), size.get());
+        let chunk = |first: usize| {
+            let part = format!("{first}-{}", first.saturating_add(size - 1).min(count));
+            let mut arguments = self.arguments.clone();
+            arguments.push(format!("--only={part}").into());
+            JobEntry { arguments, part: Some(part), ..self.clone() }
+        };
+        Ok((1..=count).step_by(size).map(chunk).collect())
     }
 }
 

@@ -4,6 +4,7 @@ use super::args::Command;
 use super::batch_file::JobEntry;
 use super::exit::Failure;
 use super::still_files::StillFiles;
+use super::views;
 use anyhow::anyhow;
 use base::film::atomic;
 use render::walk::FileNames;
@@ -18,6 +19,15 @@ pub fn check_apart(entries: &[JobEntry]) -> Result<(), Failure> {
     for entry in entries {
         // The check of an entry reports its other errors.
         let Ok(command) = entry.command() else { continue };
+        if let Command::Views(args) = &command {
+            for file in views::files(args).unwrap_or_default() {
+                let Ok(file) = atomic::resolve(&file) else { continue };
+                if let Some(other) = written.insert(file, entry) {
+                    return Err(shared(other, entry));
+                }
+            }
+            continue;
+        }
         let output = match &command {
             Command::Render(args) => StillFiles::new(args).map(|files| files.main().to_owned()).ok(),
             _ => Some(entry.output.clone()),

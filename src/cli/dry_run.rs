@@ -6,10 +6,11 @@ use super::talk;
 use super::walk_job::{PlannedChunk, WalkJob};
 use base::stats::available_bytes;
 use render::session::{Goal, PlanGoal, Session};
+use render::walk::views::ListedViews;
 use scene::Requirements;
 use serde_json::json;
 use std::fmt::Write;
-use world::view::{Framing, View};
+use world::view::View;
 
 /// Reports on an image.
 ///
@@ -18,14 +19,20 @@ use world::view::{Framing, View};
 pub fn still(job: &RenderJob, session: &Session) -> Result<(), Failure> {
     let mut files = job.files.names();
     files.extend(job.previews.file().map(|path| path.display().to_string()));
-    report(&files, &job.framing(session), &job.goal, session)
+    let view = View::new(&session.cameras, &job.framing(session)).map_err(Failure::usage)?;
+    report(&files, &view, &job.goal, session)
 }
 
-/// Reports on the frames of a walk that are not complete.
+/// Reports on the frames of a walk that are not complete. `listed` has the views of a list.
 ///
 /// # Errors
 /// If a frame cannot be framed, or takes more memory than there is.
-pub fn walk(job: &WalkJob, session: &Session, chunks: &[PlannedChunk]) -> Result<(), Failure> {
+pub fn walk(
+    job: &WalkJob,
+    session: &Session,
+    chunks: &[PlannedChunk],
+    listed: Option<&ListedViews>,
+) -> Result<(), Failure> {
     let unwritten = chunks.iter().flat_map(PlannedChunk::unwritten);
     let files = unwritten.flat_map(|number| {
         let (exr, png) = job.files(number);
@@ -34,13 +41,12 @@ pub fn walk(job: &WalkJob, session: &Session, chunks: &[PlannedChunk]) -> Result
     let files: Vec<String> =
         files.chain(job.previews.file().map(|path| path.display().to_string())).collect();
     let Some(first) = chunks.iter().flat_map(|chunk| &chunk.frames).next() else { return Ok(()) };
-    report(&files, &job.framing(*first, session), &job.goal, session)
+    report(&files, &job.view(*first, session, listed)?, &job.goal, session)
 }
 
 /// Prints files, resolution, method and memory.
-fn report(files: &[String], framing: &Framing, goal: &Goal, session: &Session) -> Result<(), Failure> {
-    let view = View::new(&session.cameras, framing).map_err(Failure::usage)?;
-    let image = session.expected_memory(&view, goal).map_err(Failure::usage)?;
+fn report(files: &[String], view: &View, goal: &Goal, session: &Session) -> Result<(), Failure> {
+    let image = session.expected_memory(view, goal).map_err(Failure::usage)?;
     let scene = Requirements::of(&session.world.scene).memory.total() as u64;
     let method = method(goal);
     let window = &view.window;

@@ -35,7 +35,7 @@ Exit codes:
   130  stopped at once by a second signal
 
 A still that is stopped by a signal is written as a partial image. If no pixel is rendered yet, nothing is written.
-Frames of a walk are complete or absent.";
+Frames of a walk and views of a list are complete or absent.";
 
 /// Reason why a run failed, with its exit code.
 #[derive(Debug)]

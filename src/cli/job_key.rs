@@ -1,7 +1,7 @@
 //! The key of an image: a hash of everything that its files depend on. `--resume` compares it.
 
 use base::film::ExrFile;
-use readers::fnv1a;
+use readers::{ViewList, fnv1a};
 use render::method::ScaledSetting;
 use render::method::path::PartialImage;
 use render::session::{ErrorLimit, Goal, PlanGoal, Session, TimeGoal};
@@ -34,6 +34,11 @@ pub fn of(session: &Session, goal: &Goal, more: Value) -> String {
         "verify": format!("{verify:?}"),
         "more": more,
     }))
+}
+
+/// Returns the key of the views of a list with the key `job`. Exposure and virtual lights depend on all views.
+pub fn of_views(job: &str, list: &ViewList, exposes_each: bool) -> String {
+    hash(json!([job, format!("{:016x}", list.hash()), exposes_each]))
 }
 
 /// Returns the key of the last of `frames` in a walk with the key `walk`. Its records come from `frames`.

@@ -47,6 +47,7 @@ mod reading_args;
 mod render;
 mod sheet;
 mod short_help;
+mod shots;
 mod still_files;
 mod study;
 mod talk;
@@ -55,6 +56,8 @@ mod threads;
 mod values;
 mod verify;
 mod version;
+mod views;
+mod views_args;
 mod walk;
 mod walk_job;
 mod walk_report;
@@ -83,6 +86,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     let outcome = catch_unwind(AssertUnwindSafe(|| match cli.command {
         Command::Render(args) => render::run(*args),
         Command::Walk(args) => walk::run(*args),
+        Command::Views(args) => views::run(*args),
         Command::Batch(args) => batch::run(args),
         Command::Info(args) => info::run(args),
         Command::Denoise(args) => denoise::run(args),

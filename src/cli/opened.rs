@@ -55,15 +55,20 @@ fn unreadable(error: SceneError) -> Failure {
 
 /// Prints warnings and repairs.
 fn report(path: &Path, warnings: &[Warning], repairs: &SanitizeReport) {
+    print_warnings(warnings);
+    if !repairs.is_clean() {
+        talk::note(&format!("{}: {repairs}", path.display()));
+    }
+}
+
+/// Prints warnings.
+pub fn print_warnings(warnings: &[Warning]) {
     for (warning, times) in grouped(warnings) {
         let more = if times > 1 { format!(" (and at {} more places)", times - 1) } else { String::new() };
         match warning.severity {
             Severity::Note => talk::note(&format!("{warning}{more}")),
             Severity::Warning => talk::warning(&format!("{warning}{more}")),
         }
-    }
-    if !repairs.is_clean() {
-        talk::note(&format!("{}: {repairs}", path.display()));
     }
 }
 

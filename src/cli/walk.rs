@@ -16,6 +16,7 @@ use base::stats::{Stage, Stopwatch};
 use readers::LoadOptions;
 use render::session::{BLACK, FrameError, Opened, Remark, RenderedFrame, Session};
 use render::walk::saved::{self, Pace};
+use render::walk::views::{ListedViews, Outlook};
 use render::walk::{Walk, exposure};
 use serde_json::json;
 use std::collections::BTreeSet;
@@ -29,12 +30,16 @@ use world::view::View;
 /// Runs the command.
 pub fn run(args: WalkArgs) -> Result<(), Failure> {
     talk::start(args.picture.progress, args.picture.loudness(), "walk");
-    let job = WalkJob::new(args)?;
+    run_job(&WalkJob::new(args)?)
+}
+
+/// Runs a checked command: a walk, or the views of a list.
+pub fn run_job(job: &WalkJob) -> Result<(), Failure> {
     let control = Arc::new(Control::new());
     interrupt::cancel_on_signal(&control).context("cannot catch signals").map_err(Failure::render)?;
     threads::pool(job.threads)?.install(|| {
         let opened = opened::open(&job.scene, &job.reading)?;
-        walk(&job, &opened, RunSpan::whole(), &control)
+        walk(job, &opened, RunSpan::whole(), &control)
     })
 }
 
@@ -44,6 +49,9 @@ pub fn run(args: WalkArgs) -> Result<(), Failure> {
 /// If a frame cannot be rendered or written, or a signal interrupted the run.
 pub fn walk(job: &WalkJob, opened: &Opened, span: RunSpan, control: &Control) -> Result<(), Failure> {
     let Opened { session, warnings, moves, .. } = opened;
+    opened::print_warnings(job.shots.views().map_or(&[], |views| views.list.warnings()));
+    let listed = job.listed(session)?;
+    let listed = listed.as_ref();
     let chunks = job.plan(session, *moves)?;
     let inputs = Inputs::of(session);
     for number in chunks.iter().flat_map(|chunk| &chunk.frames) {
@@ -56,21 +64,25 @@ pub fn walk(job: &WalkJob, opened: &Opened, span: RunSpan, control: &Control) ->
         outputs::check_unprotected([&exr].into_iter().chain(&png).map(PathBuf::as_path))?;
     }
     if job.dry_run {
-        return dry_run::walk(job, session, &chunks);
+        return dry_run::walk(job, session, &chunks, listed);
     }
     if *moves {
         talk::note("the model moves: each frame is rendered without records of the frames before it");
     }
-    let mut report = WalkReport::new(job.stats);
+    let mut report = WalkReport::new(job.stats, job.shots.noun());
     for number in chunks.iter().flat_map(PlannedChunk::untouched) {
         report.skip();
         talk::event("frame", || json!({ "frame": number, "state": "skipped" }));
     }
     let count = chunks.iter().map(PlannedChunk::count).sum();
+    let outlook = listed.filter(|_| count > 0).map(|listed| listed.outlook(session, control));
+    let outlook = outlook.as_ref();
     let progress = Watch::new(job.progress, RunProgress::new(count, Stages::of(&job.goal), span));
     let (warnings, said) = (warnings.len(), BTreeSet::new());
-    let showing = job.previews.begin(&job.name());
-    let mut frames = Frames { job, session, warnings, control, look: None, report, progress, showing, said };
+    let showing = job.previews.begin(&job.shots.name());
+    let (shared, look) = (Shared { listed, outlook }, None);
+    let mut frames =
+        Frames { job, session, shared, warnings, control, look, report, progress, showing, said };
     let ended = chunks.into_iter().try_for_each(|chunk| match moves {
         true => frames.posed(chunk, opened),
         false => frames.chunk(chunk, session),
@@ -78,9 +90,29 @@ pub fn walk(job: &WalkJob, opened: &Opened, span: RunSpan, control: &Control) ->
     ended.and(frames.report.sum_up())
 }
 
+/// Results for all views of a list, which come before the first view. The frames of a path have none.
+#[derive(Clone, Copy)]
+struct Shared<'a> {
+    /// The views.
+    listed: Option<&'a ListedViews>,
+    /// Surfaces that they see together.
+    outlook: Option<&'a Outlook>,
+}
+
+impl<'a> Shared<'a> {
+    /// Returns a walk of views, if there are views, with what they share.
+    fn in_walk(self, walk: Walk<'a>) -> Walk<'a> {
+        match self.outlook {
+            Some(outlook) => walk.of_views(outlook),
+            None => walk,
+        }
+    }
+}
+
 /// A running walk.
 struct Frames<'a> {
     job: &'a WalkJob,
+    shared: Shared<'a>,
     /// Scene of the exposure: of all frames, or of the first one if the model moves.
     session: &'a Session,
     /// Number of warnings of the reader.
@@ -102,7 +134,7 @@ impl Frames<'_> {
             return self.chunk(chunk, &first.session);
         };
         if self.control.is_cancelled() {
-            return Err(interrupted(number));
+            return Err(interrupted(&self.job.shots.label(number)));
         }
         let reading = LoadOptions { frame: Some(number), ..self.job.reading.clone() };
         let session = opened::posed(&self.job.scene, &reading, first)?;
@@ -111,7 +143,7 @@ impl Frames<'_> {
 
     /// Renders the missing frames of a chunk, and those frames whose records they need.
     fn chunk(&mut self, mut chunk: PlannedChunk, session: &Session) -> Result<(), Failure> {
-        let job = self.job;
+        let (job, shared) = (self.job, self.shared);
         let records = job.records_file(&chunk);
         let saved = chunk.saved.take();
         let behind = saved.as_ref().map_or(0, |(index, _)| index + 1);
@@ -126,6 +158,7 @@ impl Frames<'_> {
             let mut walk = restored
                 .take_if(|_| run.from_saved)
                 .unwrap_or_else(|| Walk::new(session, job.goal.clone(), job.limits));
+            walk = shared.in_walk(walk);
             for index in run.frames.clone() {
                 self.frame(&mut walk, session, &chunk, index)?;
                 let Some(path) = records.as_ref().filter(|_| index >= behind && !chunk.is_last(index)) else {
@@ -155,8 +188,9 @@ impl Frames<'_> {
     ) -> Result<(), Failure> {
         let Frames { job, control, .. } = *self;
         let (number, is_there) = (chunk.frames[index], chunk.done[index]);
+        let label = job.shots.label(number);
         if control.is_cancelled() {
-            return Err(interrupted(number));
+            return Err(interrupted(&label));
         }
         let watch = Stopwatch::start();
         let [place, count] = self.progress.frames();
@@ -164,7 +198,7 @@ impl Frames<'_> {
             "frame",
             || json!({ "frame": number, "state": "start", "index": place, "count": count, "is_there": is_there }),
         );
-        let view = View::new(&session.cameras, &job.framing(number, session)).map_err(Failure::usage)?;
+        let view = job.view(number, session, self.shared.listed)?;
         let work = || walk.frame(&view, control);
         let is_done =
             |frame: &Result<RenderedFrame, FrameError>| frame.as_ref().is_ok_and(|frame| frame.complete);
@@ -177,18 +211,18 @@ impl Frames<'_> {
         let work = || showing.frame(&shown, control, work);
         let frame = self.progress.frame(Some(number), control, work, is_done);
         let mut frame = frame.map_err(|error| match error {
-            FrameError::Interrupted | FrameError::Unplanned => interrupted(number),
+            FrameError::Interrupted | FrameError::Unplanned => interrupted(&label),
             FrameError::Memory { .. } | FrameError::Unplannable(_) => Failure::usage(error),
         })?;
         if !frame.complete {
-            return Err(interrupted(number));
+            return Err(interrupted(&label));
         }
         self.showing.rendered(&frame.film.color);
         let is_black = frame.is_black();
         if is_there {
             self.report.repeat();
         } else {
-            self.say_once(&frame, number);
+            self.say_once(&frame, &label);
             self.write(&mut frame, number, &chunk.keys[index], &view, &watch)?;
             frame.stats.add_time(Stage::Total, watch.elapsed());
             self.report.add(number, &frame)?;
@@ -196,7 +230,7 @@ impl Frames<'_> {
         let seconds = watch.elapsed().wall_seconds;
         talk::event("frame", || json!({ "frame": number, "state": "end", "seconds": seconds }));
         if job.reading.strict && is_black {
-            return Err(Failure::render(anyhow!("frame {number}: {BLACK}")));
+            return Err(Failure::render(anyhow!("{label}: {BLACK}")));
         }
         Ok(())
     }
@@ -211,8 +245,13 @@ impl Frames<'_> {
         watch: &Stopwatch,
     ) -> Result<(), Failure> {
         let (exr, png) = self.job.files(number);
-        let look = self.look(number, view)?;
+        let label = self.job.shots.label(number);
+        let look = self.look(&label, view, &frame.film.color)?;
         frame.film.metadata.set("frame", number as f64);
+        if let Some(views) = self.job.shots.views() {
+            frame.film.metadata.set("view", views.title(number).as_str());
+            frame.facts["view"] = views.title(number).into();
+        }
         frame.film.metadata.set("job", key);
         let mut film = mem::replace(&mut frame.film, Film::new(Image::new(0, 0)));
         if self.job.reproducible {
@@ -223,35 +262,44 @@ impl Frames<'_> {
         frame.facts["scene_warnings"] = self.warnings.into();
         frame.facts["output"] = exr.to_string_lossy().into();
         frame.facts["png"] = png.map(|(path, _)| path.to_string_lossy()).into();
-        talk::wrote(&format!("frame {number}: {}", written.said(watch.elapsed())), &written.files);
+        talk::wrote(&format!("{label}: {}", written.said(watch.elapsed())), &written.files);
         Ok(())
     }
 
-    /// Returns the look of the PNG files; `None` if there are none.
+    /// Returns the look of a PNG file; `None` if there is none.
     ///
-    /// The exposure depends on frames of the whole path, so that every part of the walk has the same. `number` is
-    /// the frame that needs it.
-    fn look(&mut self, number: usize, view: &View) -> Result<Option<Look>, Failure> {
-        let Some(tone) = self.job.tone.filter(|_| self.look.is_none()) else {
+    /// The exposure depends on frames of the whole path or list, so that every part has the same, unless each view is
+    /// exposed by itself. `label` names the frame that needs it.
+    fn look(&mut self, label: &str, view: &View, image: &Image) -> Result<Option<Look>, Failure> {
+        let Some(tone) = self.job.tone else { return Ok(None) };
+        if self.job.shots.views().is_some_and(|views| views.exposes_each) {
+            return Ok(Some(tone.look(image)));
+        }
+        if self.look.is_some() {
             return Ok(self.look);
-        };
-        let factor = match tone.exposure {
-            Exposure::Auto => exposure::over_path(self.session, view.window.film, self.control).exp2(),
-            Exposure::Ev(ev) => ev.exp2(),
+        }
+        let factor = match (tone.exposure, self.shared.listed) {
+            (Exposure::Auto, None) => {
+                exposure::over_path(self.session, view.window.film, self.control).exp2()
+            }
+            (Exposure::Auto, Some(listed)) => {
+                exposure::over_views(self.session, listed.all(), self.control).exp2()
+            }
+            (Exposure::Ev(ev), _) => ev.exp2(),
         };
         if self.control.is_cancelled() {
-            return Err(interrupted(number));
+            return Err(interrupted(label));
         }
         self.look = Some(Look { factor, curve: tone.curve });
         Ok(self.look)
     }
 
     /// Prints the remarks of a frame that no earlier frame had.
-    fn say_once(&mut self, frame: &RenderedFrame, number: usize) {
+    fn say_once(&mut self, frame: &RenderedFrame, label: &str) {
         for remark in &frame.remarks {
             let (Remark::Note(text) | Remark::Warning(text)) = remark;
             if self.said.insert(text.clone()) {
-                let line = format!("frame {number}: {text}");
+                let line = format!("{label}: {text}");
                 match remark {
                     Remark::Note(_) => talk::note(&line),
                     Remark::Warning(_) => talk::warning(&line),
@@ -262,8 +310,8 @@ impl Frames<'_> {
 }
 
 /// Returns the failure of a frame that was interrupted. The frames before it are complete.
-fn interrupted(number: usize) -> Failure {
+fn interrupted(label: &str) -> Failure {
     Failure::interrupted(anyhow!(
-        "interrupted; frame {number} was not complete and is not written; run the same command with --resume to continue"
+        "interrupted; {label} was not complete and is not written; run the same command with --resume to continue"
     ))
 }

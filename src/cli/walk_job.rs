@@ -1,10 +1,12 @@
-//! A walk command, checked as far as possible before the scene is read.
+//! A walk command, checked as far as possible before the scene is read. The views of a list are a walk, too.
 
-use super::args::{StatsFormat, WalkArgs};
+use super::args::{PictureArgs, StatsFormat, WalkArgs};
 use super::exit::Failure;
 use super::live::Previews;
+use super::method_args::MethodArgs;
 use super::outputs::{OutputCheck, check_new, check_outputs};
-use super::plan_args::PlanArgs;
+use super::plan_args::{PlanArgs, Quality};
+use super::shots::{Shots, ViewFiles};
 use super::values::{ProgressMode, Resolution};
 use super::{job_key, threads};
 use anyhow::anyhow;
@@ -12,11 +14,12 @@ use base::film::Tone;
 use readers::LoadOptions;
 use render::session::{Goal, PlanGoal, Session};
 use render::walk::chunk::{self, FrameChunk, Run};
-use render::walk::{FileNames, FrameList, RetentionLimits, saved};
+use render::walk::views::{ListedViews, ListedViewsError};
+use render::walk::{FrameList, RetentionLimits, saved};
 use serde_json::json;
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
-use world::view::Framing;
+use world::view::{Framing, View};
 
 /// Frame whose pose a model takes when the scene of a walk is read.
 pub const FIRST_POSE: usize = 1;
@@ -52,11 +55,12 @@ pub struct WalkJob {
     pub stats: Option<StatsFormat>,
     /// Form of the messages on stderr.
     pub progress: ProgressMode,
-    names: FileNames,
+    /// Frames of the camera path or views of a list, with their files.
+    pub shots: Shots,
     /// Film size instead of the scene's.
-    size: Option<Resolution>,
+    pub size: Option<Resolution>,
     /// Part of the film, as offset and size in pixels.
-    crop: Option<[[u32; 2]; 2]>,
+    pub crop: Option<[[u32; 2]; 2]>,
 }
 
 impl WalkJob {
@@ -65,18 +69,7 @@ impl WalkJob {
     /// # Errors
     /// If the arguments are wrong or a file cannot be written.
     pub fn new(args: WalkArgs) -> Result<WalkJob, Failure> {
-        let plan = PlanArgs { quality: args.quality, ..PlanArgs::default() };
-        let goal = Goal {
-            method: plan.method(args.method.method()?, &args.method.pinned())?,
-            may_choose: false,
-            plan: PlanGoal::AsSet,
-            features: args.picture.aov.into_iter().collect(),
-            denoise: args.picture.denoise.denoise(),
-            denoise_quality: Some(args.picture.denoise.quality().unwrap_or_default()),
-            keep_noisy: args.picture.denoise.keep_noisy,
-            verify: None,
-        };
-        args.picture.denoise.check(goal.denoises())?;
+        let goal = goal(&args.method, args.quality, &args.picture)?;
         let defaults = RetentionLimits::default();
         let bytes = args.memory_limit.map_or(defaults.bytes, |bytes| bytes.0);
         let no_overwrite = args.picture.no_overwrite;
@@ -101,7 +94,7 @@ impl WalkJob {
             threads: threads::count(args.picture.threads),
             stats: args.stats,
             progress: args.picture.progress,
-            names: args.output,
+            shots: Shots::Path(args.output),
             size: args.picture.resolution,
             crop: args.picture.crop.map(|crop| [crop.offset, crop.size]),
         };
@@ -119,19 +112,40 @@ impl WalkJob {
 
     /// Returns the files of a frame: OpenEXR, and PNG if there is to be one.
     pub fn files(&self, frame: usize) -> (PathBuf, Option<PathBuf>) {
-        let exr = self.names.of(frame);
+        let exr = self.shots.exr(frame);
         let png = self.tone.map(|_| exr.with_extension("png"));
         (exr, png)
     }
 
-    /// Returns the names of the frames' files for users.
-    pub fn name(&self) -> String {
-        self.names.pattern().display().to_string()
+    /// Places the views of a list in the session's scene; returns `None` for the frames of a path.
+    ///
+    /// # Errors
+    /// If a camera cannot be represented or a film cannot be rendered.
+    pub fn listed(&self, session: &Session) -> Result<Option<ListedViews>, Failure> {
+        let Some(views) = self.shots.views() else { return Ok(None) };
+        let size = |own| self.size.map_or(own, |size| size.of(own));
+        let placed = ListedViews::new(session, &views.list, size, self.crop);
+        placed.map(Some).map_err(|error| match error {
+            ListedViewsError::Scene(error) => Failure::input(error),
+            ListedViewsError::Film { .. } => Failure::usage(error),
+        })
     }
 
-    /// Returns the framing of a frame.
-    pub fn framing(&self, frame: usize, session: &Session) -> Framing {
-        Framing { frame: Some(frame), ..self.film(session) }
+    /// Returns the view of a frame. `listed` has the views of a list.
+    ///
+    /// # Errors
+    /// If the frame cannot be framed.
+    pub fn view(
+        &self,
+        frame: usize,
+        session: &Session,
+        listed: Option<&ListedViews>,
+    ) -> Result<View, Failure> {
+        if let Some(view) = listed.and_then(|listed| listed.all().get(frame.checked_sub(1)?)) {
+            return Ok(*view);
+        }
+        let framing = Framing { frame: Some(frame), ..self.film(session) };
+        View::new(&session.cameras, &framing).map_err(Failure::usage)
     }
 
     /// Returns film size and crop.
@@ -145,6 +159,12 @@ impl WalkJob {
     /// # Errors
     /// If the scene has no camera path, or a frame lies beyond it.
     fn numbers(&self, session: &Session) -> Result<Vec<usize>, Failure> {
+        if let Some(views) = self.shots.views() {
+            return Ok(match &self.frames {
+                Some(list) => list.iter().collect(),
+                None => (1..=views.count()).collect(),
+            });
+        }
         let frames = session.cameras.path.len();
         let scene = self.scene.display();
         if frames == 0 {
@@ -162,7 +182,9 @@ impl WalkJob {
         }
     }
 
-    /// Divides the frames into chunks, and decides which frames to render. If the model moves, each frame is a chunk.
+    /// Divides the frames into chunks, and decides which frames to render.
+    ///
+    /// If the model moves, each frame is a chunk. Each reproducible view is a chunk, too: it depends on no other view.
     ///
     /// # Errors
     /// If the scene has no camera path, or a frame lies beyond it.
@@ -178,10 +200,14 @@ impl WalkJob {
                 self.reproducible,
             ]),
         );
+        let views = self.shots.views();
+        let key = views.map_or(key.clone(), |views| job_key::of_views(&key, &views.list, views.exposes_each));
         // Without records, frames do not depend on each other.
-        let has_records = self.goal.method.as_walks().is_some() && !moves;
+        let is_alone = moves || views.is_some() && self.reproducible;
+        let has_records = self.goal.method.as_walks().is_some() && !is_alone;
         let size = if has_records { self.chunk } else { NonZeroUsize::new(1) };
-        let chunks = chunk::chunks(&numbers, size, session.cameras.path.len());
+        let length = views.map_or(session.cameras.path.len(), ViewFiles::count);
+        let chunks = chunk::chunks(&numbers, size, length);
         Ok(chunks.into_iter().map(|chunk| self.planned(chunk, &key)).collect())
     }
 
@@ -206,8 +232,28 @@ impl WalkJob {
     /// Returns the file of the records of a chunk; `None` if no frame can follow.
     pub fn records_file(&self, chunk: &PlannedChunk) -> Option<PathBuf> {
         let first = chunk.frames.first().filter(|_| chunk.frames.len() > 1 || !chunk.ends)?;
-        Some(self.names.of(*first).with_extension("records"))
+        Some(self.shots.exr(*first).with_extension("records"))
     }
+}
+
+/// Returns the goal of the frames of a walk, or of the views of a list.
+///
+/// # Errors
+/// If the arguments are wrong.
+pub fn goal(method: &MethodArgs, quality: Option<Quality>, picture: &PictureArgs) -> Result<Goal, Failure> {
+    let plan = PlanArgs { quality, ..PlanArgs::default() };
+    let goal = Goal {
+        method: plan.method(method.method()?, &method.pinned())?,
+        may_choose: false,
+        plan: PlanGoal::AsSet,
+        features: picture.aov.iter().copied().collect(),
+        denoise: picture.denoise.denoise(),
+        denoise_quality: Some(picture.denoise.quality().unwrap_or_default()),
+        keep_noisy: picture.denoise.keep_noisy,
+        verify: None,
+    };
+    picture.denoise.check(goal.denoises())?;
+    Ok(goal)
 }
 
 /// Frames of a chunk and the state of their files.

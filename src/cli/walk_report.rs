@@ -29,6 +29,8 @@ const STAGES: [(&str, Stage); 6] = [
 #[derive(Default)]
 pub struct WalkReport {
     format: Option<StatsFormat>,
+    /// Word for an image: frame or view.
+    noun: &'static str,
     /// Number of frames rendered.
     rendered: u64,
     /// Number of frames skipped because their files exist.
@@ -42,9 +44,10 @@ pub struct WalkReport {
 }
 
 impl WalkReport {
-    /// Builds a report. `format` is the format of the statistics, if there are to be any.
-    pub fn new(format: Option<StatsFormat>) -> WalkReport {
-        WalkReport { format, ..WalkReport::default() }
+    /// Builds a report. `format` is the format of the statistics, if there are to be any. `noun` is the word for an
+    /// image.
+    pub fn new(format: Option<StatsFormat>, noun: &'static str) -> WalkReport {
+        WalkReport { format, noun, ..WalkReport::default() }
     }
 
     /// Counts a frame that is skipped.
@@ -75,7 +78,9 @@ impl WalkReport {
                 report["frame"] = json!(number);
                 talk::print(&format!("{report}\n"))
             }
-            Some(StatsFormat::Text) => talk::print(&format!("{}{}", header(is_first), row(number, stats))),
+            Some(StatsFormat::Text) => {
+                talk::print(&format!("{}{}", header(is_first, self.noun), row(number, stats)))
+            }
             None => Ok(()),
         }
     }
@@ -87,7 +92,7 @@ impl WalkReport {
     pub fn sum_up(&self) -> Result<(), Failure> {
         if let (Some(StatsFormat::Text), [first, .., last]) = (self.format, &self.bytes[..]) {
             let kept: Vec<f64> = self.bytes.iter().map(|(_, bytes)| mib(*bytes)).collect();
-            talk::print(&chart("\nrecords kept by frame [MiB]", [first.0, last.0], &kept))?;
+            talk::print(&chart(&format!("\nrecords kept by {} [MiB]", self.noun), [first.0, last.0], &kept))?;
         }
         talk::summary(&self.text(), || {
             json!({
@@ -102,8 +107,8 @@ impl WalkReport {
     }
 
     fn text(&self) -> String {
-        let WalkReport { rendered, skipped, repeated, .. } = self;
-        let mut text = format!("{rendered} frames rendered");
+        let WalkReport { rendered, skipped, repeated, noun, .. } = self;
+        let mut text = format!("{rendered} {noun}s rendered");
         if *skipped > 0 {
             text += &format!(", {skipped} existed already");
         }
@@ -112,7 +117,7 @@ impl WalkReport {
         }
         if *rendered > 0 {
             let frames = *rendered as f64;
-            text += &format!(", {:.2} s per frame", self.time.wall_seconds / frames);
+            text += &format!(", {:.2} s per {noun}", self.time.wall_seconds / frames);
         }
         let most = self.bytes.iter().map(|(_, bytes)| *bytes).max().unwrap_or(0);
         if most > 0 {
@@ -135,13 +140,13 @@ fn count(stats: &Stats, name: &str) -> u64 {
 }
 
 /// Returns the head of the table, or nothing after the first frame.
-fn header(is_first: bool) -> String {
+fn header(is_first: bool, noun: &str) -> String {
     if !is_first {
         return String::new();
     }
     let counts: String = COUNTS.iter().map(|(name, _)| format!("{name:>9}")).collect();
     let stages: String = STAGES.iter().map(|(name, _)| format!("{name:>9}")).collect();
-    format!("{:>7}{counts}{stages}  (CPU s)\n", "frame")
+    format!("{:>7}{counts}{stages}  (CPU s)\n", noun)
 }
 
 /// Returns the row of a frame: counts of records, then CPU seconds.

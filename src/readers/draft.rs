@@ -19,6 +19,8 @@ pub(crate) struct DraftCamera {
     pub right: DVec3,
     pub up: DVec3,
     pub tan_half_x: f64,
+    pub shift: [f64; 2],
+    pub pixel_height: f64,
     pub near: f64,
     pub far: f64,
     pub projection: Projection,
@@ -34,6 +36,8 @@ impl Default for DraftCamera {
             right: DVec3::X,
             up: DVec3::Y,
             tan_half_x: 22.5f64.to_radians().tan(),
+            shift: [0.0; 2],
+            pixel_height: 1.0,
             near: 0.0,
             far: f64::INFINITY,
             projection: Projection::default(),
@@ -135,4 +139,16 @@ impl Draft {
     pub fn main_file(&self) -> Location {
         Location { path: self.scene.sources.first().cloned().unwrap_or_default(), line: None }
     }
+}
+
+/// A camera of a list, in world coordinates.
+#[derive(Clone, Debug)]
+pub(crate) struct DraftView {
+    /// Name of the camera or path of the image; may be empty.
+    pub name: String,
+    /// True if the name is the path of an image.
+    pub is_path: bool,
+    pub camera: DraftCamera,
+    /// Width and height of the film in pixels; `None` for the size of the scene's film.
+    pub resolution: Option<[u32; 2]>,
 }

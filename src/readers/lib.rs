@@ -50,6 +50,7 @@ mod stand_in;
 mod statements;
 mod surfaces;
 mod viewpoint;
+mod views;
 
 use error::Log;
 use finish::{divide, recentre, sanitize, wanted};
@@ -65,6 +66,7 @@ pub use lighting::{EnvironmentChoice, Lighting, UpAxis};
 pub(crate) use mesh::smooth_normals;
 pub use options::LoadOptions;
 pub use viewpoint::Viewpoint;
+pub use views::{SceneView, ViewList};
 
 /// A scene, its cameras, and reports of reading it.
 #[derive(Clone, Debug)]

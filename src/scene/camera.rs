@@ -1,4 +1,4 @@
-//! Cameras with square pixels: pinhole, thin lens, parallel projection.
+//! Cameras: pinhole, thin lens, parallel projection.
 
 use super::PixelFilter;
 use base::sampling::uniform_disk;
@@ -10,7 +10,7 @@ pub struct Camera {
     /// Position of the pinhole, of the lens centre, or of the film centre of a parallel projection, relative to the
     /// scene's centre.
     pub origin: Vec3,
-    /// Unit vector through the film's centre.
+    /// Unit vector along the axis: through the film's centre, unless the film is shifted.
     pub forward: Vec3,
     /// Unit vector towards the film's right edge.
     pub right: Vec3,
@@ -19,6 +19,10 @@ pub struct Camera {
     /// Tangent of half the horizontal field of view, for the scene's own aspect ratio. Half the film's width for a
     /// parallel projection.
     pub tan_half_x: f32,
+    /// Offset of the film's middle from the axis, to the right and up, in the unit of `tan_half_x`.
+    pub shift: [f32; 2],
+    /// Height of a pixel over its width.
+    pub pixel_height: f32,
     /// Near clipping distance along `forward`.
     pub near: f32,
     /// Far clipping distance along `forward`.
@@ -74,6 +78,8 @@ impl Default for Camera {
             right: Vec3::X,
             up: Vec3::Y,
             tan_half_x: 1.0,
+            shift: [0.0; 2],
+            pixel_height: 1.0,
             near: 0.0,
             far: f32::INFINITY,
             projection: Projection::Pinhole,
@@ -93,11 +99,13 @@ impl Camera {
         (self.forward + self.right * x + self.up * y).normalize()
     }
 
-    /// Returns the offset to the right and up from the film's centre to `pixel`, at distance 1 from a pinhole.
+    /// Returns the offset to the right and up from the axis to `pixel`, at distance 1 from a pinhole.
     #[inline]
     fn across(&self, pixel: [f32; 2], resolution: [u32; 2]) -> [f32; 2] {
         let [w, h] = resolution.map(|r| r as f32);
-        [(2.0 * pixel[0] / w - 1.0) * self.tan_half_x, (h - 2.0 * pixel[1]) / w * self.tan_half_x]
+        let x = (2.0 * pixel[0] / w - 1.0) * self.tan_half_x;
+        let y = (h - 2.0 * pixel[1]) / w * self.tan_half_x * self.pixel_height;
+        [x + self.shift[0], y + self.shift[1]]
     }
 
     /// Returns origin and unit direction of the ray through film position `pixel`.
@@ -122,6 +130,21 @@ impl Camera {
 mod tests {
     use super::*;
     use base::sampling::owen_sobol_2d;
+
+    #[test]
+    fn focal_lengths_and_the_principal_point_are_those_of_a_calibrated_camera() {
+        let ([w, h], [fx, fy], [cx, cy]) = ([64.0, 48.0], [50.0, 40.0], [30.5, 20.25]);
+        let camera = Camera {
+            tan_half_x: 0.5 * w / fx,
+            shift: [(0.5 * w - cx) / fx, (cy - 0.5 * h) / fy],
+            pixel_height: fx / fy,
+            ..Camera::default()
+        };
+        for pixel in [[0.0, 0.0], [30.5, 20.25], [64.0, 48.0], [7.5, 40.0]] {
+            let expected = Vec3::new((pixel[0] - cx) / fx, -(pixel[1] - cy) / fy, -1.0).normalize();
+            assert!((camera.direction(pixel, [64, 48]) - expected).length() < 1e-6, "{pixel:?}");
+        }
+    }
 
     #[test]
     fn rays_through_a_lens_meet_in_the_plane_in_focus_and_parallel_ones_never() {

@@ -171,12 +171,20 @@ impl View {
         let basis = [DVec3::X, DVec3::Y, DVec3::Z, -origin].map(|v| axes.map(|axis| v.dot(axis)));
         let [width, height] = self.window.film.map(f64::from);
         let is_length = camera.projection == Projection::Parallel;
-        let scale = 0.5 / (f64::from(camera.tan_half_x) * if is_length { unit } else { 1.0 });
+        let length = if is_length { unit } else { 1.0 };
+        let scale = 0.5 / (f64::from(camera.tan_half_x) * length);
+        let [right, up] = camera.shift.map(|shift| f64::from(shift) * length);
+        let height = height * f64::from(camera.pixel_height);
         let (mut world_to_camera, mut world_to_ndc) = ([0.0; 16], [0.0; 16]);
         for (row, [x, y, z]) in basis.into_iter().enumerate() {
             let w = if row == 3 { 1.0 } else { 0.0 };
             let [depth, by] = if camera.projection == Projection::Parallel { [z, w] } else { [w, z] };
-            let ndc = [0.5 * by + scale * x, 0.5 * by - scale * width / height * y, depth, by];
+            let ndc = [
+                0.5 * by + scale * (x - right * by),
+                0.5 * by - scale * width / height * (y - up * by),
+                depth,
+                by,
+            ];
             for (column, (to_camera, to_ndc)) in [x, y, z, w].into_iter().zip(ndc).enumerate() {
                 world_to_camera[4 * row + column] = to_camera as f32;
                 world_to_ndc[4 * row + column] = to_ndc as f32;
@@ -258,7 +266,8 @@ mod tests {
     fn points_on_a_ray_are_projected_to_its_pixel() {
         let (forward, right) = (Vec3::new(0.6, 0.0, -0.8), Vec3::new(0.8, 0.0, 0.6));
         let (origin, up) = (Vec3::new(3.0, -2.0, 1.0), Vec3::Y);
-        let camera = Camera { origin, forward, right, up, tan_half_x: 0.7, ..Camera::default() };
+        let film = Camera { tan_half_x: 0.7, shift: [0.1, -0.07], pixel_height: 1.2, ..Camera::default() };
+        let camera = Camera { origin, forward, right, up, ..film };
         let view = View::whole(camera, [40, 30]);
         let centre = DVec3::new(100.0, -50.0, 25.0);
         let matrices = view.matrices(centre, 1.0);
@@ -283,7 +292,8 @@ mod tests {
 
     #[test]
     fn parallel_rays_are_projected_to_their_pixel() {
-        let camera = Camera { tan_half_x: 3.0, projection: Projection::Parallel, ..Camera::default() };
+        let parallel = Camera { projection: Projection::Parallel, ..Camera::default() };
+        let camera = Camera { tan_half_x: 3.0, shift: [0.5, 0.2], ..parallel };
         let view = View::whole(camera, [40, 30]);
         let matrix = view.matrices(DVec3::ZERO, 1.0).world_to_ndc;
         for pixel in [[0, 0], [31, 7], [20, 29]] {

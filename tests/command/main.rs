@@ -25,6 +25,7 @@ mod slurm;
 mod tev;
 mod usage;
 mod verify;
+mod views;
 mod walk;
 
 use std::path::{Path, PathBuf};

@@ -62,13 +62,16 @@ impl LocalCoordinates {
     pub fn local_camera(&self, c: &DraftCamera) -> Camera {
         let scale = self.scale();
         let length = |length: f32| (f64::from(length) * scale) as f32;
-        let (mut tan_half_x, mut projection) = (c.tan_half_x, c.projection);
+        let (mut tan_half_x, mut shift, mut projection) = (c.tan_half_x, c.shift, c.projection);
         match &mut projection {
             Projection::Pinhole => {}
             Projection::Lens { radius, distance } => {
                 (*radius, *distance) = (length(*radius), length(*distance));
             }
-            Projection::Parallel => tan_half_x *= scale,
+            Projection::Parallel => {
+                tan_half_x *= scale;
+                shift = shift.map(|shift| shift * scale);
+            }
         }
         Camera {
             origin: self.local(c.origin),
@@ -76,6 +79,8 @@ impl LocalCoordinates {
             right: c.right.as_vec3(),
             up: c.up.as_vec3(),
             tan_half_x: tan_half_x as f32,
+            shift: shift.map(|shift| shift as f32),
+            pixel_height: c.pixel_height as f32,
             near: (c.near * scale) as f32,
             far: (c.far * scale) as f32,
             projection,

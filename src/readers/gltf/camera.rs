@@ -4,14 +4,14 @@ use super::animation::{self, Track};
 use super::document::GltfFile;
 use super::nodes::{Local, Placed};
 use super::report::Findings;
-use crate::draft::{DEFAULT_RESOLUTION, DraftCamera, Shot};
+use crate::draft::{DEFAULT_RESOLUTION, DraftCamera, DraftView, Shot};
 use crate::error::SceneError;
 use base::math::{right_of, unit};
 use glam::{DMat4, DVec3};
 use gltf_json::animation::{Channel, Property};
 use gltf_json::camera::{Camera, Type};
 use gltf_json::validation::Checked;
-use scene::{MAX_FRAMES, PixelFilter, Projection};
+use scene::{MAX_FRAMES, Projection};
 
 /// Default frames per second of animations. glTF counts in seconds.
 pub(crate) const FRAMES_PER_SECOND: f64 = 24.0;
@@ -31,14 +31,8 @@ impl Viewer<'_> {
     ///
     /// Returns `None` for files without cameras.
     pub fn shot(&self, wanted: Option<&str>, report: &mut Findings) -> Result<Option<Shot>, SceneError> {
-        let nodes = &self.document.root.nodes;
-        let mut cameras = Vec::new();
-        for (at, placed) in self.tree.iter().enumerate() {
-            if let Some(index) = nodes[placed.node].camera {
-                cameras.push((at, self.document.get(index, "camera")?));
-            }
-        }
-        let name = |at: usize| nodes[self.tree[at].node].name.as_deref().unwrap_or_default();
+        let cameras = self.cameras()?;
+        let name = |at: usize| self.name(at);
         // Lists numbers and names; a camera without name has a number only.
         let names = |cameras: &[(usize, &Camera)]| {
             let named = |(i, (at, _)): (usize, &(usize, &Camera))| match name(*at) {
@@ -73,14 +67,45 @@ impl Viewer<'_> {
             let what = format!("there are {} cameras: {}", cameras.len(), names(&cameras));
             report.note(&what, "the first is used; choose another with --camera", "");
         }
-        let Some(lens) = Lens::of(camera) else {
-            return Err(self.document.wrong(format!("the camera {} has no lens", name(at))));
-        };
+        let lens = self.lens(at, camera)?;
         let resolution = lens.resolution();
         let still = self.camera(&self.tree[at].to_file, &lens, resolution)?;
         let path = self.path(at, &lens, resolution, report)?;
         let names = cameras.iter().map(|(at, _)| name(*at).to_owned()).collect();
         Ok(Some(Shot { camera: still, names, fits: false, path, resolution, crop: None }))
+    }
+
+    /// Returns all cameras of the file in their order, each with the size of its film.
+    pub fn views(&self) -> Result<Vec<DraftView>, SceneError> {
+        let view = |(at, camera): (usize, &Camera)| {
+            let lens = self.lens(at, camera)?;
+            let resolution = lens.resolution();
+            let name = match self.name(at) {
+                "" => camera.name.as_deref().unwrap_or_default(),
+                name => name,
+            };
+            let camera = self.camera(&self.tree[at].to_file, &lens, resolution)?;
+            Ok(DraftView { name: name.to_owned(), is_path: false, camera, resolution: Some(resolution) })
+        };
+        self.cameras()?.into_iter().map(view).collect()
+    }
+
+    /// Returns the cameras of the file, each with the index of its node in the tree.
+    fn cameras(&self) -> Result<Vec<(usize, &Camera)>, SceneError> {
+        let nodes = &self.document.root.nodes;
+        let of_node = |(at, placed): (usize, &Placed)| nodes[placed.node].camera.map(|index| (at, index));
+        let cameras = self.tree.iter().enumerate().filter_map(of_node);
+        cameras.map(|(at, index)| Ok((at, self.document.get(index, "camera")?))).collect()
+    }
+
+    /// Returns the name of a node of the tree, or nothing.
+    fn name(&self, at: usize) -> &str {
+        self.document.root.nodes[self.tree[at].node].name.as_deref().unwrap_or_default()
+    }
+
+    fn lens(&self, at: usize, camera: &Camera) -> Result<Lens, SceneError> {
+        Lens::of(camera)
+            .ok_or_else(|| self.document.wrong(format!("the camera {} has no lens", self.name(at))))
     }
 
     /// Returns one camera per frame, if an animation moves the camera.
@@ -173,9 +198,9 @@ impl Viewer<'_> {
             return Err(self.document.wrong(what));
         }
         let tan_half_x = half_height * f64::from(resolution[0]) / f64::from(resolution[1]);
-        let up = right.cross(forward);
-        let filter = PixelFilter::default();
-        Ok(DraftCamera { origin, forward, right, up, tan_half_x, near, far, projection, filter })
+        let placed =
+            DraftCamera { origin, forward, right, up: right.cross(forward), ..DraftCamera::default() };
+        Ok(DraftCamera { tan_half_x, near, far, projection, ..placed })
     }
 }
 

@@ -56,20 +56,8 @@ impl GltfFile {
     /// Reads the file, to which `from` refers, and its buffers.
     pub fn open(path: &Path, from: &Location) -> Result<GltfFile, SceneError> {
         let bytes = read_file(path, from)?;
-        let place = Location::file(path);
-        let container = Container::of(&bytes, &place)?;
-        let root = container.root(&place)?;
-        check_extensions(&root, &place)?;
-        let mut document = GltfFile {
-            root,
-            folder: folder_of(path).to_owned(),
-            sources: vec![(path.to_owned(), fnv1a(&bytes))],
-            unread: statements::unread(container.json),
-            buffers: Vec::new(),
-            views: BTreeMap::new(),
-            accessors: BTreeMap::new(),
-            place,
-        };
+        let container = Container::of(&bytes, &Location::file(path))?;
+        let mut document = GltfFile::described(path, &bytes, &container)?;
         for i in 0..document.root.buffers.len() {
             let buffer = document.buffer(i, container.binary)?;
             document.buffers.push(buffer);
@@ -79,6 +67,30 @@ impl GltfFile {
         let accessors = draco::accessors(&document.root, |view| document.view(view).ok());
         document.accessors = accessors.map_err(|what| document.wrong(what))?;
         Ok(document)
+    }
+
+    /// Reads the description in the file, to which `from` refers, without its buffers.
+    pub fn without_buffers(path: &Path, from: &Location) -> Result<GltfFile, SceneError> {
+        let bytes = read_file(path, from)?;
+        let container = Container::of(&bytes, &Location::file(path))?;
+        GltfFile::described(path, &bytes, &container)
+    }
+
+    /// Returns the description in the bytes of a file, without its buffers.
+    fn described(path: &Path, bytes: &[u8], container: &Container) -> Result<GltfFile, SceneError> {
+        let place = Location::file(path);
+        let root = container.root(&place)?;
+        check_extensions(&root, &place)?;
+        Ok(GltfFile {
+            root,
+            folder: folder_of(path).to_owned(),
+            sources: vec![(path.to_owned(), fnv1a(bytes))],
+            unread: statements::unread(container.json),
+            buffers: Vec::new(),
+            views: BTreeMap::new(),
+            accessors: BTreeMap::new(),
+            place,
+        })
     }
 
     /// Returns the object of an index.

@@ -31,17 +31,19 @@ mod statements;
 mod texture;
 mod volume;
 
-use crate::draft::{DEFAULT_RESOLUTION, DraftCamera, Shot};
+use crate::draft::{DEFAULT_RESOLUTION, DraftCamera, DraftView, Shot};
 use crate::error::{Location, Log, SceneError};
 use crate::file::stem_of;
 use crate::finish::framing;
 use crate::options::LoadOptions;
 use crate::plan::{Contents, Motion, ScenePlan};
+use crate::selection::PartSelection;
 use base::math::right_of;
 use camera::Viewer;
 use document::GltfFile;
-use glam::DVec3;
+use glam::{DMat4, DVec3};
 use importer::Importer;
+use nodes::Local;
 use pose::Pose;
 use report::Findings;
 use std::collections::BTreeMap;
@@ -81,6 +83,14 @@ pub(super) fn read(path: &Path, options: &LoadOptions, log: &mut Log) -> Result<
         motion: imported.motion,
         contents,
     })
+}
+
+/// Reads all cameras of the model at `path`, in its pose at rest. Its meshes are not read.
+pub(super) fn read_views(path: &Path) -> Result<Vec<DraftView>, SceneError> {
+    let document = GltfFile::without_buffers(path, &Location::file(path))?;
+    let tree = nodes::tree(&document, &PartSelection::default(), |_, node| Local::of(node))?;
+    let (to_world, fps) = (DMat4::IDENTITY, FRAMES_PER_SECOND);
+    Viewer { document: &document, tree: &tree, to_world, fps, is_posed: false }.views()
 }
 
 /// Adds the model at `path`, to which `from` refers, to the contents of a scene.

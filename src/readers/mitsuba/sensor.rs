@@ -115,8 +115,7 @@ impl Converter<'_> {
             };
         }
         let origin = to_world.transform_point3(DVec3::ZERO);
-        let (tan_half_x, near, far, filter) = (1.0, 0.0, f64::INFINITY, PixelFilter::Box);
-        Ok(DraftCamera { origin, forward, right, up, tan_half_x, near, far, projection, filter })
+        Ok(DraftCamera { origin, forward, right, up, projection, ..DraftCamera::default() })
     }
 
     fn film(&mut self, sensor: &Object) -> Result<SensorFilm, SceneError> {

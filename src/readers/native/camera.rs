@@ -2,7 +2,8 @@
 
 use super::builder::SceneBuilder;
 use super::path::{Key, KeyedPath};
-use super::text::{CameraText, KeyText, Number, PathText, SceneText};
+use super::source::SourceText;
+use super::text::{CameraText, FixedArray, KeyText, Number, NumberArray, PathText, SceneText};
 use crate::draft::{DEFAULT_RESOLUTION, DraftCamera, Shot};
 use crate::error::{Location, SceneError};
 use crate::finish::framing;
@@ -26,8 +27,7 @@ impl SceneBuilder<'_> {
             Some(text) => (self.file.place(text.span()), text.get_ref()),
             None => (Location::file(self.file.path), &unspecified),
         };
-        self.check_fov_axis(text)?;
-        self.check_filter(text)?;
+        check_names(self.file, text)?;
         let path = text.path.as_ref().map(|walk| self.path(text, walk, resolution)).transpose()?;
         let path = path.unwrap_or_default();
         let shot = |camera, fits, path| {
@@ -36,8 +36,7 @@ impl SceneBuilder<'_> {
         };
         match (text.origin, text.target, path.first()) {
             (Some(origin), Some(target), _) => {
-                let still = KeyText { frame: None, origin, target, up: None, fov: None };
-                shot(camera(text, &key(text, &still, &place)?, resolution, &place)?, false, path)
+                shot(still(text, [origin, target], resolution, &place)?, false, path)
             }
             (None, None, Some(first)) => shot(*first, false, path),
             (None, None, None) => {
@@ -58,13 +57,7 @@ impl SceneBuilder<'_> {
     }
 
     fn resolution(&self, scene: &SceneText, default: [u32; 2]) -> Result<[u32; 2], SceneError> {
-        let Some(text) = &scene.resolution else { return Ok(default) };
-        let resolution = text.get_ref().0;
-        if resolution.iter().any(|r| !(1..=MAX_SIDE).contains(r)) {
-            let what = format!("the resolution is {} x {}", resolution[0], resolution[1]);
-            return Err(self.file.place(text.span()).wrong(what, format!("give 1 to {MAX_SIDE} each")));
-        }
-        Ok(resolution)
+        Ok(film(self.file, scene.resolution.as_ref())?.unwrap_or(default))
     }
 
     /// Returns one camera per frame.
@@ -127,26 +120,46 @@ impl SceneBuilder<'_> {
         }
         Ok(frames)
     }
+}
 
-    fn check_filter(&self, text: &CameraText) -> Result<(), SceneError> {
-        match text.filter.as_ref().map(|f| (filter(f.get_ref()), f.span())) {
-            Some((None, span)) => {
-                let remedy = "use box, tent, gaussian, blackman-harris, mitchell, catmull-rom or lanczos";
-                Err(self.file.place(span).wrong("the film's filter is not known", remedy))
-            }
-            _ => Ok(()),
-        }
+/// Rejects unknown names of axes and filters.
+pub(super) fn check_names(file: SourceText, text: &CameraText) -> Result<(), SceneError> {
+    if let Some(axis) = text.fov_axis.as_ref().filter(|axis| !["x", "y"].contains(&axis.get_ref().as_str())) {
+        let what = format!("unknown fov_axis \"{}\"", axis.get_ref());
+        return Err(file.place(axis.span()).wrong(what, "use x or y"));
     }
+    match text.filter.as_ref().filter(|name| filter(name.get_ref()).is_none()) {
+        Some(name) => {
+            let remedy = "use box, tent, gaussian, blackman-harris, mitchell, catmull-rom or lanczos";
+            Err(file.place(name.span()).wrong("the film's filter is not known", remedy))
+        }
+        None => Ok(()),
+    }
+}
 
-    fn check_fov_axis(&self, text: &CameraText) -> Result<(), SceneError> {
-        match text.fov_axis.as_ref().map(|a| (a.get_ref().as_str(), a.span())) {
-            None | Some(("x" | "y", _)) => Ok(()),
-            Some((other, span)) => {
-                let what = format!("unknown fov_axis \"{other}\"");
-                Err(self.file.place(span).wrong(what, "use x or y"))
-            }
-        }
+/// Returns the size of a film in pixels, if it is given.
+pub(super) fn film(
+    file: SourceText,
+    text: Option<&Spanned<FixedArray<u32, 2>>>,
+) -> Result<Option<[u32; 2]>, SceneError> {
+    let Some(text) = text else { return Ok(None) };
+    let resolution = text.get_ref().0;
+    if resolution.iter().any(|side| !(1..=MAX_SIDE).contains(side)) {
+        let what = format!("the resolution is {} x {}", resolution[0], resolution[1]);
+        return Err(file.place(text.span()).wrong(what, format!("give 1 to {MAX_SIDE} each")));
     }
+    Ok(Some(resolution))
+}
+
+/// Returns a camera that stands at the first point and looks at the second.
+pub(super) fn still(
+    text: &CameraText,
+    [origin, target]: [NumberArray<3>; 2],
+    resolution: [u32; 2],
+    place: &Location,
+) -> Result<DraftCamera, SceneError> {
+    let still = KeyText { frame: None, origin, target, up: None, fov: None };
+    camera(text, &key(text, &still, place)?, resolution, place)
 }
 
 fn filter(name: &str) -> Option<PixelFilter> {
@@ -223,6 +236,6 @@ fn camera(
         (None, None) => Projection::Pinhole,
     };
     let filter = text.filter.as_ref().and_then(|name| filter(name.get_ref())).unwrap_or_default();
-    let up = right.cross(forward);
-    Ok(DraftCamera { origin, forward, right, up, tan_half_x: half_width, near, far, projection, filter })
+    let placed = DraftCamera { origin, forward, right, up: right.cross(forward), ..DraftCamera::default() };
+    Ok(DraftCamera { tan_half_x: half_width, near, far, projection, filter, ..placed })
 }

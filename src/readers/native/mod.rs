@@ -19,6 +19,7 @@ mod path;
 mod sky;
 mod source;
 mod text;
+mod views;
 
 use crate::error::{Location, Log, SceneError};
 use crate::file::{read_text, stem_of};
@@ -30,6 +31,7 @@ use std::path::Path;
 use text::SceneText;
 
 pub(crate) use model::read as read_model;
+pub(crate) use views::read as read_views;
 
 /// Reads the description at `path`.
 pub(super) fn read(path: &Path, log: &mut Log) -> Result<ScenePlan, SceneError> {

@@ -7,6 +7,7 @@ pub mod cache;
 pub mod lightcuts;
 mod lights;
 mod memo;
+mod outlook;
 pub mod output;
 pub mod path;
 pub mod photon_cache;
@@ -21,6 +22,7 @@ mod scale;
 mod tally;
 
 pub use lights::LightStore;
+pub use outlook::Outlook;
 pub use output::Output;
 pub use registry::Method;
 pub use renderer::{FormerFrames, Noisy, Pilots, Renderer, Resumes, Walks, render};

@@ -12,12 +12,23 @@ use world::view::View;
 use world::{SurfacePoint, World};
 
 /// Maximum number of points whose indirect light photons are planned for.
-const MAX_SEEN: usize = 16384;
+pub const MAX_SEEN: usize = 16384;
 /// Minimum number of shading points for each of them.
 const MIN_STEP: usize = 4;
 
+/// Surfaces that virtual lights are made for.
+#[derive(Clone, Copy, Debug)]
+pub enum LitSurfaces<'a> {
+    /// Surfaces in view. Photons are planned for them.
+    InView,
+    /// Surfaces that several views see. Photons are planned for them, and the views can share the lights.
+    Seen(&'a [SurfacePoint]),
+    /// All surfaces. All frames can share the lights.
+    All,
+}
+
 /// Settings of the first stages.
-pub struct Preparation {
+pub struct Preparation<'a> {
     /// Samples, seed and path length.
     pub sampling: Sampling,
     /// Sampling of direct light, if the eye pass does it.
@@ -26,8 +37,8 @@ pub struct Preparation {
     pub lights: LightPassSettings,
     /// Builder of the light trees.
     pub family: Family,
-    /// True if photons are planned for the surfaces in view. Otherwise all frames can share the lights.
-    pub for_view: bool,
+    /// Surfaces that the lights are made for.
+    pub lit: LitSurfaces<'a>,
 }
 
 /// Shading points and virtual lights: an image before its lighting.
@@ -49,7 +60,7 @@ impl<'w> Prepared<'w> {
         preparation: &Preparation,
         control: &Control,
     ) -> Prepared<'w> {
-        let Preparation { sampling, direct, lights: numbers, family, for_view } = preparation;
+        let Preparation { sampling, direct, lights: numbers, family, lit } = preparation;
         let mut tally = Tally::default();
         let settings = sampling.eye(&world.scene);
         let caustics = lights.photons.for_image(world, view, settings, control, &mut tally);
@@ -62,20 +73,25 @@ impl<'w> Prepared<'w> {
             tally.count("Eye/light samples", eye.light_samples.into());
         }
         // The light pass comes second, since the eye pass takes the most memory when it sorts its points.
-        let seen = if *for_view { seen(world, &eye) } else { Vec::new() };
+        let seen = match lit {
+            LitSurfaces::InView => seen(world, &eye, MAX_SEEN),
+            LitSurfaces::Seen(points) => points.to_vec(),
+            LitSurfaces::All => Vec::new(),
+        };
         let wanted = lights_wanted(world, *sampling, *numbers, *family, seen);
         let lights = lights.get(world, wanted, control, &mut tally);
         Prepared { eye, lights, tally }
     }
 }
 
-/// Returns the points whose indirect light photons are planned for; none if no light comes from infinitely far.
-fn seen(world: &World, eye: &EyePass) -> Vec<SurfacePoint> {
+/// Returns about `most` points whose indirect light photons are planned for; none if no light comes from infinitely
+/// far.
+pub fn seen(world: &World, eye: &EyePass, most: usize) -> Vec<SurfacePoint> {
     if !world.emitters.have_far() {
         return Vec::new();
     }
     let ShadingPoints { geometry, surfaces } = &eye.points;
-    let step = geometry.len().div_ceil(MAX_SEEN).max(MIN_STEP);
+    let step = geometry.len().div_ceil(most.max(1)).max(MIN_STEP);
     let point = |(geometry, surface): (&PointGeometry, &PointSurface)| SurfacePoint {
         position: geometry.position,
         normal: geometry.normal,

@@ -1,6 +1,7 @@
 //! Traits of methods: the abilities of every method, and those of some.
 
 use super::lights::LightStore;
+use super::outlook::Outlook;
 use super::path::PartialImage;
 use super::sampled_pixels::SampledPixels;
 use super::sampling::HasSampling;
@@ -81,7 +82,7 @@ pub trait Renderer: Settings + HasSampling {
     }
 }
 
-/// Results of the previous frames of a walk-through.
+/// Results of the previous frames of a walk-through, or of the previous views of a list.
 pub struct FormerFrames<'a> {
     /// Records of indirect light.
     pub records: &'a mut RetainedRecords,
@@ -89,6 +90,9 @@ pub struct FormerFrames<'a> {
     pub settled: Settled,
     /// Visibility thresholds of the previous frame, if records are adapted to them.
     pub thresholds: Option<&'a Thresholds>,
+    /// Surfaces that all views see, if the frames are views of their own. The frames of a film have no outlook: noise
+    /// that the previous frame did not have would flicker.
+    pub outlook: Option<&'a Outlook>,
 }
 
 /// A method that renders frames of a walk-through with the records of previous frames.

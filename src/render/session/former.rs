@@ -1,7 +1,7 @@
 //! Results of former renders on which a render builds.
 
-use crate::method::RetainedRecords;
 use crate::method::path::PartialImage;
+use crate::method::{Outlook, RetainedRecords};
 use transport::perception::Thresholds;
 use transport::reprojection::PreviousImage;
 
@@ -23,6 +23,8 @@ pub struct WalkState<'a> {
     pub last: Option<&'a mut PreviousImage>,
     /// Visibility thresholds of the previous image, if records are adapted to them.
     pub thresholds: Option<VisibleDifferences<'a>>,
+    /// Surfaces that all views see, if the frames are views of a list.
+    pub outlook: Option<&'a Outlook>,
 }
 
 /// Visibility thresholds of the previous image, and how the next ones are made.

@@ -16,11 +16,11 @@ pub fn next_frame(context: &FrameContext, method: &Method, state: WalkState) -> 
         return finish.apply(method, method.render(world, lights, view, control));
     };
     let samples_light = method.leaves_noise();
-    let WalkState { records, last, thresholds } = state;
+    let WalkState { records, last, thresholds, outlook } = state;
     let last = last.filter(|_| samples_light && finish.denoises());
     let thresholds = thresholds.filter(|_| finish.denoises() || !samples_light);
     if last.is_none() && thresholds.is_none() {
-        let former = FormerFrames { records, settled: Settled::default(), thresholds: None };
+        let former = FormerFrames { records, settled: Settled::default(), thresholds: None, outlook };
         return finish.apply(method, walks.render_next(world, lights, former, view, control));
     }
     let watch = Stopwatch::start();
@@ -30,7 +30,7 @@ pub fn next_frame(context: &FrameContext, method: &Method, state: WalkState) -> 
     let settled = reprojected.as_ref().map(Reprojected::settled).unwrap_or_default();
     let number = settled.pixels.iter().filter(|is_settled| **is_settled).count();
     let visible = thresholds.as_ref().map(|visible| &*visible.thresholds);
-    let former = FormerFrames { records, settled, thresholds: visible };
+    let former = FormerFrames { records, settled, thresholds: visible, outlook };
     let mut output = walks.render_next(world, lights, former, view, control);
     output.stats.add_time(Stage::EyePass, looking);
     output.stats.count("Walk/pixels settled", number as u64);

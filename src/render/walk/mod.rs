@@ -8,6 +8,10 @@
 //! (see [`transport::reprojection`]). Elsewhere the random numbers of a pixel are the same in every frame, so that
 //! noise which the denoiser leaves does not flicker.
 //!
+//! A walk may also render views of a list, which follow no path (see [`Walk::of_views`]). They share records and
+//! virtual lights, and each view is rendered as a still otherwise: nothing is reprojected, and noise may differ from
+//! view to view. [`views`] has what they share before the first one.
+//!
 //! A frame has the same bits for any number of threads. It depends on the frames that the walk rendered before.
 //!
 //! Walks are cut into chunks, which begin without records. The records of a chunk are saved beside its frames, so that
@@ -25,8 +29,9 @@ pub mod frames;
 pub mod names;
 pub mod posed;
 pub mod saved;
+pub mod views;
 
-use crate::method::RetainedRecords;
+use crate::method::{Outlook, RetainedRecords};
 use crate::session::{Former, FrameError, Goal, RenderedFrame, Session, VisibleDifferences, WalkState};
 use base::progress::Control;
 use transport::perception::Thresholds;
@@ -46,6 +51,8 @@ pub struct Walk<'a> {
     records: RetainedRecords,
     last: PreviousImage,
     thresholds: Thresholds,
+    /// Surfaces that all views see; `None` for the frames of a film.
+    outlook: Option<&'a Outlook>,
 }
 
 /// Bytes of the number that states the length of a saved image.
@@ -55,7 +62,12 @@ impl<'a> Walk<'a> {
     /// Begins a walk without records. If `goal` plans settings, each frame is rendered alone.
     pub fn new(session: &'a Session, goal: Goal, limits: RetentionLimits) -> Walk<'a> {
         let (records, last) = (RetainedRecords::new(limits), PreviousImage::default());
-        Walk { session, goal, limits, records, last, thresholds: Thresholds::default() }
+        Walk { session, goal, limits, records, last, thresholds: Thresholds::default(), outlook: None }
+    }
+
+    /// Makes the frames views of their own, which see `outlook` together.
+    pub fn of_views(self, outlook: &'a Outlook) -> Walk<'a> {
+        Walk { outlook: Some(outlook), ..self }
     }
 
     /// Resumes a walk from the bytes that [`Walk::save`] returned; `None` if the bytes are damaged.
@@ -72,7 +84,7 @@ impl<'a> Walk<'a> {
             postcard::take_from_bytes(last).ok()?;
         let is_sound = excess.is_empty() && last.is_sound() && thresholds.is_sound();
         let records = RetainedRecords::restored(limits, records)?;
-        is_sound.then_some(Walk { session, goal, limits, records, last, thresholds })
+        is_sound.then_some(Walk { session, goal, limits, records, last, thresholds, outlook: None })
     }
 
     /// Saves the records and the last image between frames.
@@ -92,7 +104,7 @@ impl<'a> Walk<'a> {
         let last = self.limits.reprojects.then_some(&mut self.last);
         let thresholds = &mut self.thresholds;
         let thresholds = self.limits.q_scale.map(|q_scale| VisibleDifferences { thresholds, q_scale });
-        let state = WalkState { records: &mut self.records, last, thresholds };
+        let state = WalkState { records: &mut self.records, last, thresholds, outlook: self.outlook };
         self.session.frame_from(view, &self.goal, Former::Frames(state), control)
     }
 }

@@ -21,6 +21,7 @@ pub fn cameras_in(scene: &Scene, cameras: &Cameras, of: &Scene) -> Cameras {
         Camera {
             origin: ((world - scene.centre) / scene.unit()).as_vec3(),
             tan_half_x: if is_parallel { length(camera.tan_half_x) } else { camera.tan_half_x },
+            shift: if is_parallel { camera.shift.map(length) } else { camera.shift },
             near: length(camera.near),
             far: length(camera.far),
             projection,

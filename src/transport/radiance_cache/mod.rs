@@ -7,7 +7,8 @@
 //! - [`record`]: irradiance at a point; [`footprint`]: the ellipse within which it is used;
 //! - [`glossy`], [`glossy_point`]: the materials whose lobes need series of radiance, and the reflection by these
 //!   lobes;
-//! - [`store`]: the records of a layer; [`retained`]: the records of a walk-through, from frame to frame.
+//! - [`store`]: the records of a layer; [`retained`]: the records of a walk-through, from frame to frame;
+//!   [`vantage`]: the cameras of its frames.
 //!
 //! Computation:
 //! - [`candidate`]: points where records are needed; [`source`]: what computes records there;
@@ -55,5 +56,6 @@ pub mod store;
 pub mod targets;
 #[cfg(test)]
 mod tests;
+pub mod vantage;
 
 pub use settings::{CLAMP, CacheSettings, DirectBy, Footprints, FoundBy, MAX_CUT};

@@ -18,16 +18,13 @@ use super::record::NewRecord;
 use super::record::Record;
 use super::settings::CacheSettings;
 use super::store::Records;
+use super::vantage::Vantage;
 use crate::hsh::Radiance;
 use crate::lights::{DirectIndirect, Origin};
 use crate::perception::Q_SCALE;
 use base::stats::Stats;
-use glam::Vec3;
 use serde::{Deserialize, Serialize};
 use std::mem;
-
-/// Minimum cosine, between the normal and the direction to the eye, that foreshortens; the same as for eye samples.
-const MIN_COS: f32 = 0.05;
 
 /// Longer radius, in minimum radii, below which a record rests.
 const RESTING_RADIUS: f32 = 0.5;
@@ -79,8 +76,8 @@ struct RetainedRecord {
 struct Use {
     /// Last frame in which its footprint may have covered a visible point.
     last: u32,
-    /// Spacing of eye samples at the record over its apparent distance.
-    spacing_by_distance: f32,
+    /// Spacing of eye samples at the record over [`Vantage::spacing`].
+    relative_spacing: f32,
 }
 
 impl RetainedRecords {
@@ -104,13 +101,13 @@ impl RetainedRecords {
         postcard::to_stdvec(&(self.frame, &self.retained)).unwrap_or_default()
     }
 
-    /// Begins a frame seen from `eye`. Returns the records that may light it.
-    pub fn begin(&mut self, eye: Vec3, settings: &CacheSettings) -> &mut Records {
+    /// Begins a frame seen from `vantage`. Returns the records that may light it.
+    pub fn begin(&mut self, vantage: &Vantage, settings: &CacheSettings) -> &mut Records {
         self.frame += 1;
         for origin in Origin::ALL {
             let least_in_spacings = settings.reach[origin as usize][0];
             for mut retained in mem::take(&mut self.retained[origin]) {
-                let spacing = retained.usage.spacing_by_distance * apparent_distance(&retained.record, eye);
+                let spacing = retained.usage.relative_spacing * vantage.spacing(&retained.record);
                 let footprint = &mut retained.record.footprint;
                 footprint.lower(least_in_spacings * spacing);
                 if footprint.max_radius() < RESTING_RADIUS * least_in_spacings * spacing {
@@ -126,7 +123,7 @@ impl RetainedRecords {
     }
 
     /// Ends the frame that `frame` has lit: records age, and those beyond the limits are dropped.
-    pub fn end(&mut self, frame: &CacheFrame, eye: Vec3, stats: &mut Stats) {
+    pub fn end(&mut self, frame: &CacheFrame, vantage: &Vantage, stats: &mut Stats) {
         let mut added = 0;
         for origin in Origin::ALL {
             let mut usages = mem::take(&mut self.older[origin]);
@@ -143,8 +140,8 @@ impl RetainedRecords {
                     None => {
                         let sample = placed.next().map_or(0, |sample| *sample as usize);
                         let spacing = frame.targets.points.geometry.get(sample).map_or(0.0, |p| p.spacing);
-                        let spacing_by_distance = spacing / apparent_distance(&record, eye);
-                        Use { last: self.frame, spacing_by_distance }
+                        let relative_spacing = spacing / vantage.spacing(&record);
+                        Use { last: self.frame, relative_spacing }
                     }
                 };
                 self.retained[origin].push(RetainedRecord { record, series, usage });
@@ -214,15 +211,6 @@ impl RetainedRecord {
     }
 }
 
-/// Returns the distance to which the spacing of eye samples at a record is proportional: the distance to the eye,
-/// foreshortened. Chains through mirrors are longer, so that spacings are never overestimated as the camera moves.
-fn apparent_distance(record: &Record, eye: Vec3) -> f32 {
-    let to_eye = eye - record.position;
-    let distance = to_eye.length();
-    let cos = record.normal.dot(to_eye).abs() / distance.max(f32::MIN_POSITIVE);
-    (distance / cos.max(MIN_COS).sqrt()).max(f32::MIN_POSITIVE)
-}
-
 #[cfg(test)]
 mod tests {
     use super::super::candidate::Candidate;
@@ -260,13 +248,13 @@ mod tests {
     /// Lights a floor seen from `eye`; returns the number of new records.
     fn light(kept: &mut RetainedRecords, floor: &Floor, eye: Vec3) -> usize {
         let source = source();
-        let records = kept.begin(eye, &source.0);
+        let records = kept.begin(&Vantage::at(eye), &source.0);
         let before = records.indirect.records.len();
         let mut stats = Stats::new();
         let frame = CacheFrame::fill(floor.targets(), records, &source, &Control::new(), &mut stats);
         assert!(frame.splats.indirect.sums.iter().all(|sum| sum.weight > 0.0));
         let after = records.indirect.records.len();
-        kept.end(&frame, eye, &mut stats);
+        kept.end(&frame, &Vantage::at(eye), &mut stats);
         assert_eq!(stats.get("Walk/new records"), Some(base::stats::Counter::Count((after - before) as u64)));
         after - before
     }
@@ -339,7 +327,10 @@ mod tests {
         let before = kept.count();
         let far = light(&mut kept, &seen_from(&floor, 8.0), Vec3::new(0.5, 0.5, 32.0));
         assert!(far > 0 && kept.count() == before + far);
-        assert_eq!(kept.begin(Vec3::new(0.5, 0.5, 32.0), &source().0).indirect.records.len(), far);
+        assert_eq!(
+            kept.begin(&Vantage::at(Vec3::new(0.5, 0.5, 32.0)), &source().0).indirect.records.len(),
+            far
+        );
     }
 
     #[test]

@@ -67,10 +67,20 @@ fn valid(extension: &'static str) -> Vec<Seed> {
         .collect()
 }
 
+/// Lists of cameras of NeRF data sets.
+const VIEWS: [&str; 2] = [
+    r#"{ "camera_angle_x": 0.7, "frames": [{ "file_path": "./train/r_0", "rotation": 0.01, "transform_matrix":
+        [[1, 0, 0, 0], [0, 0.8, -0.6, 2], [0, 0.6, 0.8, 3], [0, 0, 0, 1]] }] }"#,
+    r#"{ "fl_x": 50, "fl_y": 40, "cx": 30.5, "cy": 20, "w": 64, "h": 48, "k1": 0.1, "camera_model": "OPENCV",
+        "frames": [{ "file_path": "../a/b.png", "fl_x": 60, "transform_matrix":
+        [[0, 0, 1, 1], [1, 0, 0, 2], [0, 1, 0, 3], [0, 0, 0, 1]] }] }"#,
+];
+
 /// Seeds of a target.
 pub fn of(target: &str) -> Vec<Seed> {
     match target {
         "toml" => valid("toml"),
+        "views" => VIEWS.iter().map(|list| Seed::plain("json", *list)).collect(),
         "xml" => valid("xml"),
         "obj" => valid("obj").into_iter().chain(vec![Seed::plain("obj", ALL_OF_OBJ)]).collect(),
         "mtl" => valid("mtl").into_iter().chain(vec![Seed::plain("mtl", ALL_OF_MTL)]).collect(),

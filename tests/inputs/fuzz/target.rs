@@ -7,12 +7,12 @@ use lightsplat::film::{ExrFile, Pixels};
 use lightsplat::math::Rgb;
 use lightsplat::method::Method;
 use lightsplat::progress::Control;
-use lightsplat::readers::{EnvironmentChoice, Lighting, LoadOptions, Loaded, SceneError, load};
+use lightsplat::readers::{EnvironmentChoice, Lighting, LoadOptions, Loaded, SceneError, ViewList, load};
 use lightsplat::session::{FrameError, Goal, Remark, Session};
 use lightsplat::view::{Framing, View};
 use lightsplat::walk::{RetentionLimits, Walk};
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::{Component, Path, PathBuf};
 use std::process::{Command, Stdio};
 
 /// Number of triangles beyond which a scene is not rendered.
@@ -110,6 +110,10 @@ impl Workplace {
                 self.batch(&case);
                 return None;
             }
+            "json" => {
+                self.views(&case);
+                return None;
+            }
             _ => {}
         }
         if extension == "exr"
@@ -128,6 +132,21 @@ impl Workplace {
                 assert!(error.to_string().contains("; "), "an error without a remedy: {error}");
                 None
             }
+        }
+    }
+
+    /// Reads a list of cameras, whose images stay below their folder.
+    fn views(&self, list: &Path) {
+        let read = ViewList::read(list, false);
+        let placed = read.and_then(|list| {
+            let is_below =
+                |name: &PathBuf| name.components().all(|part| matches!(part, Component::Normal(_)));
+            assert!(list.file_names().iter().all(is_below), "{:?}", list.file_names());
+            list.in_scene(&self.session.world.scene)
+        });
+        match placed {
+            Ok(views) => assert!(views.iter().all(|view| view.camera.forward.is_normalized()), "{views:?}"),
+            Err(error) => assert!(error.to_string().contains("; "), "an error without a remedy: {error}"),
         }
     }
 

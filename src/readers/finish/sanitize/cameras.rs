@@ -12,7 +12,7 @@ const MAX_FILTER: f32 = 1e3;
 /// Rejects cameras with rays that f32 cannot represent.
 ///
 /// `place` is the location of the main file.
-pub(super) fn check_camera(
+pub(crate) fn check_camera(
     camera: &DraftCamera,
     coordinates: &LocalCoordinates,
     place: &Location,
@@ -26,7 +26,9 @@ pub(super) fn check_camera(
         Projection::Pinhole | Projection::Parallel => [1.0; 2],
     };
     let is_length = |length: f32| length > 0.0 && length <= MAX_COORDINATE as f32;
-    if !is_length(camera.tan_half_x)
+    let is_film = is_length(camera.pixel_height) && camera.shift.iter().all(|shift| shift.is_finite());
+    if !is_film
+        || !is_length(camera.tan_half_x)
         || !lens.into_iter().all(is_length)
         || camera.near > MAX_COORDINATE as f32
     {

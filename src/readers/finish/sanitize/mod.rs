@@ -21,7 +21,6 @@ use crate::draft::Draft;
 use crate::error::{Log, SceneError};
 use crate::local::LocalCoordinates;
 use attributes::repair_attributes;
-use cameras::check_camera;
 use glam::{Vec2, Vec4};
 use lights::check_lights;
 use materials::check_material;
@@ -29,6 +28,7 @@ use meshes::{drop_rounded, drop_unusable, repair_normals, use_all_vertices};
 use places::{drop_places, set_coordinates};
 use std::iter;
 
+pub(crate) use cameras::check_camera;
 pub use report::SanitizeReport;
 
 /// Fraction of triangles that may vanish by rounding without a warning. Fine models lose some.

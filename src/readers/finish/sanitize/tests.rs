@@ -19,17 +19,7 @@ fn grey() -> Material {
 }
 
 fn draft(meshes: Vec<DraftMesh>, materials: Vec<Material>) -> Draft {
-    let camera = DraftCamera {
-        origin: DVec3::ZERO,
-        forward: DVec3::NEG_Z,
-        right: DVec3::X,
-        up: DVec3::Y,
-        tan_half_x: 1.0,
-        near: 0.0,
-        far: f64::INFINITY,
-        projection: Default::default(),
-        filter: Default::default(),
-    };
+    let camera = DraftCamera { tan_half_x: 1.0, ..DraftCamera::default() };
     Draft {
         scene: Scene { name: "t".into(), sources: vec!["t.toml".into()], materials, ..Scene::default() },
         shot: Shot { camera, names: vec![], fits: false, path: vec![], resolution: [1, 1], crop: None },

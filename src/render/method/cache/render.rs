@@ -6,7 +6,7 @@ use crate::cost::PRICES;
 use crate::method::Output;
 use crate::method::lights::LightStore;
 use crate::method::photon_store::FoundCaustics;
-use crate::method::prepared::{Preparation, Prepared};
+use crate::method::prepared::{LitSurfaces, Preparation, Prepared};
 use crate::method::renderer::{FormerFrames, Noisy, Pilots, Renderer, Walks};
 use crate::method::sampled_pixels::{PILOT_SPP, SampledPixels};
 use crate::method::sampling::{HasSampling, method_settings};
@@ -27,6 +27,7 @@ use transport::radiance_cache::retained::RetainedRecords;
 use transport::radiance_cache::source::LightcutSource;
 use transport::radiance_cache::store::Records;
 use transport::radiance_cache::targets::Targets;
+use transport::radiance_cache::vantage::Vantage;
 use transport::radiance_cache::{CLAMP, CacheSettings, DirectBy, MAX_CUT};
 use transport::shade::{ShadeSettings, ShadedImage, ShadingContext, ShadingCounts};
 use world::World;
@@ -57,12 +58,16 @@ method_settings! {
     }
 }
 
-/// Inputs in which a still and a frame of a walk differ.
+/// Inputs in which a still, a view of a list and a frame of a walk differ.
 struct FrameInputs<'a> {
     /// Settings of records.
     cache: CacheSettings,
-    /// Records of the walk; `None` for a still.
+    /// Records of former frames; `None` for a still.
     kept: Option<&'a mut RetainedRecords>,
+    /// Surfaces that virtual lights are made for.
+    lit: LitSurfaces<'a>,
+    /// True for a frame of a film, whose noise must not flicker and whose guides are computed before.
+    is_film: bool,
     /// Pixels whose direct light is reprojected.
     settled: Settled,
     /// Visibility thresholds of the previous frame.
@@ -78,22 +83,29 @@ impl Settings {
         CacheSettings { cut: CutSettings { max_cut, clamp, ..self.cache.cut }, ..self.cache }
     }
 
-    fn still(&self, view: &View) -> FrameInputs<'static> {
+    fn still<'a>(&self, view: &View) -> FrameInputs<'a> {
         let pixels = view.window.film_pixel_count() as f64;
         let other_rays = PRICES.rays_beside_samples(pixels, self.spp.into(), self.light.indirect.into());
         FrameInputs {
             cache: self.record_settings(),
             kept: None,
+            lit: LitSurfaces::InView,
+            is_film: false,
             settled: Settled::default(),
             thresholds: None,
             other_rays: Some(other_rays),
         }
     }
 
-    fn next_frame<'a>(&self, former: FormerFrames<'a>) -> FrameInputs<'a> {
-        let FormerFrames { records, settled, thresholds } = former;
+    fn next_frame<'a>(&self, former: FormerFrames<'a>, view: &View) -> FrameInputs<'a> {
+        let FormerFrames { records, settled, thresholds, outlook } = former;
+        if let Some(outlook) = outlook {
+            let lit = LitSurfaces::Seen(&outlook.points);
+            return FrameInputs { kept: Some(records), lit, ..self.still(view) };
+        }
         let cache = self.record_settings().for_walk();
-        FrameInputs { cache, kept: Some(records), settled, thresholds, other_rays: None }
+        let (kept, lit) = (Some(records), LitSurfaces::All);
+        FrameInputs { cache, kept, lit, is_film: true, settled, thresholds, other_rays: None }
     }
 
     /// Returns the settings of the shading stage for an image whose pixels have this relative variance.
@@ -112,19 +124,19 @@ impl Settings {
         view: &View,
         control: &Control,
     ) -> Output {
-        let FrameInputs { cache, mut kept, settled, thresholds, other_rays } = inputs;
-        let is_still = kept.is_none();
+        let FrameInputs { cache, mut kept, lit, is_film, settled, thresholds, other_rays } = inputs;
+        let vantage = if is_film { Vantage::in_film(view) } else { Vantage::of(view) };
         let glossy = Glossy::new(world, &cache);
         let direct = direct_sampling(glossy.as_ref(), &cache, settled, other_rays);
-        let direct = direct.map(|direct| DirectSampling { guides: is_still, ..direct });
+        let direct = direct.map(|direct| DirectSampling { guides: !is_film, ..direct });
         let (sampling, family) = (self.sampling(), self.family);
-        let preparation = Preparation { sampling, direct, lights: self.light, family, for_view: is_still };
+        let preparation = Preparation { sampling, direct, lights: self.light, family, lit };
         let Prepared { eye, lights, mut tally } = Prepared::new(world, lights, view, &preparation, control);
         let context = ShadingContext::new(world, &lights, self.compensation);
 
         let mut own = Records::default();
         let records = match &mut kept {
-            Some(kept) => kept.begin(view.camera.origin, &cache),
+            Some(kept) => kept.begin(&vantage, &cache),
             None => &mut own,
         };
         let glossy = glossy.as_ref().and_then(|glossy| glossy.for_points(&eye.points, &cache));
@@ -146,7 +158,7 @@ impl Settings {
         image.came_by("records");
         control.begin(Stage::Render, tasks.len() as u64);
         // Noise that the previous frame did not have would flicker.
-        let shading = self.shading(if is_still { eye.noise } else { 0.0 });
+        let shading = self.shading(if is_film { 0.0 } else { eye.noise });
         let counts = tally
             .time(Stage::Render, || image.shade(&context, &eye, &tasks, cache.patches, &shading, control));
         image.came_by("cuts");
@@ -159,7 +171,7 @@ impl Settings {
             extra.extend(frame.inspect(records, &eye));
         }
         if let Some(kept) = kept {
-            kept.end(&frame, view.camera.origin, &mut tally.stats);
+            kept.end(&frame, &vantage, &mut tally.stats);
         }
         let guides = eye.guides.as_ref().map_or_else(Vec::new, |guides| guides.layers(&view.window));
         Output { extra, guides, complete, nonfinite, ..Output::new(color, tally) }
@@ -237,7 +249,7 @@ impl Walks for Settings {
         view: &View,
         control: &Control,
     ) -> Output {
-        self.image(world, lights, self.next_frame(former), view, control)
+        self.image(world, lights, self.next_frame(former, view), view, control)
     }
 }
 

@@ -6,7 +6,7 @@ use crate::method::Output;
 use crate::method::cache::direct_sampling::direct_sampling;
 use crate::method::cache::resolve::resolve;
 use crate::method::lights::LightStore;
-use crate::method::prepared::{Preparation, Prepared};
+use crate::method::prepared::{LitSurfaces, Preparation, Prepared};
 use crate::method::renderer::{Noisy, Renderer};
 use crate::method::sampling::{HasSampling, method_settings};
 use crate::method::tally::Tally;
@@ -192,7 +192,7 @@ impl Renderer for Settings {
         let other_rays = PRICES.rays_beside_samples(pixels, self.spp.into(), self.photons.into());
         let direct = direct_sampling(glossy.as_ref(), &cache, Settled::default(), Some(other_rays));
         let (sampling, family) = (self.sampling(), self.family);
-        let preparation = Preparation { sampling, direct, lights: self.light, family, for_view: false };
+        let preparation = Preparation { sampling, direct, lights: self.light, family, lit: LitSurfaces::All };
         let Prepared { eye, lights, mut tally } = Prepared::new(world, lights, view, &preparation, control);
         let direct = LightcutSource { context: ShadingContext::new(world, &lights, true), settings: &cache };
 

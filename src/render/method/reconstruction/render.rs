@@ -2,7 +2,7 @@
 
 use crate::method::Output;
 use crate::method::lights::LightStore;
-use crate::method::prepared::{Preparation, Prepared};
+use crate::method::prepared::{LitSurfaces, Preparation, Prepared};
 use crate::method::renderer::Renderer;
 use crate::method::sampling::{HasSampling, method_settings};
 use crate::method::scale::{CUTS, Demand, Move, ScaledSetting, Scales};
@@ -55,7 +55,7 @@ impl Renderer for Settings {
             direct: None,
             lights: self.light,
             family: self.family,
-            for_view: true,
+            lit: LitSurfaces::InView,
         };
         let Prepared { eye, lights, mut tally } = Prepared::new(world, lights, view, &preparation, control);
         let tasks: Vec<ShadingTask> = (0..eye.len() as u32).map(ShadingTask::all).collect();

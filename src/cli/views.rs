@@ -1,0 +1,109 @@
+//! `lightsplat views`: renders the cameras of a list. A walk renders them, whose frames follow no path.
+
+use super::exit::Failure;
+use super::live::Previews;
+use super::outputs::{OutputCheck, check_new, check_output, check_outputs};
+use super::shots::{Shots, ViewFiles};
+use super::views_args::ViewsArgs;
+use super::walk_job::{WalkJob, goal};
+use super::{talk, threads, walk};
+use anyhow::{Context, anyhow};
+use readers::ViewList;
+use render::walk::{FrameList, RetentionLimits};
+use std::fs;
+use std::path::PathBuf;
+
+/// Runs the command.
+pub fn run(args: ViewsArgs) -> Result<(), Failure> {
+    talk::start(args.picture.progress, args.picture.loudness(), "views");
+    walk::run_job(&job(args)?)
+}
+
+/// Checks the arguments and the list, and that the files can be written.
+///
+/// # Errors
+/// If the arguments or the list are wrong, or a file cannot be written.
+pub fn job(args: ViewsArgs) -> Result<WalkJob, Failure> {
+    let views = listed(&args)?;
+    let goal = goal(&args.method, args.quality, &args.picture)?;
+    let defaults = RetentionLimits::default();
+    let check = OutputCheck { may_stay: args.picture.resume, is_dry: args.picture.dry_run };
+    let no_overwrite = args.picture.no_overwrite;
+    let job = WalkJob {
+        reading: args.picture.reading.options_at(&args.scene, None),
+        scene: args.scene,
+        frames: args.only,
+        chunk: args.chunk,
+        resume: args.picture.resume,
+        reproducible: args.picture.reproducible,
+        tone: (!args.no_png).then_some(args.tone.tone()),
+        previews: Previews::new(args.picture.live, args.tone.tone(), check)?,
+        dry_run: args.picture.dry_run,
+        goal,
+        limits: RetentionLimits {
+            // Any view may show what any view before it has shown.
+            idle_frames: u32::MAX,
+            bytes: args.memory_limit.map_or(defaults.bytes, |bytes| bytes.0),
+            reprojects: false,
+            q_scale: None,
+        },
+        threads: threads::count(args.picture.threads),
+        stats: args.stats,
+        progress: args.picture.progress,
+        shots: Shots::Views(Box::new(views)),
+        size: args.picture.resolution,
+        crop: args.picture.crop.map(|crop| [crop.offset, crop.size]),
+    };
+    check_files(&job, check, no_overwrite)?;
+    Ok(job)
+}
+
+/// Returns the files that a command writes, without checking that it can.
+///
+/// # Errors
+/// If the list is wrong.
+pub fn files(args: &ViewsArgs) -> Result<Vec<PathBuf>, Failure> {
+    let views = listed(args)?;
+    Ok(numbers(args.only.as_ref(), views.count()).map(|number| views.exr(number)).collect())
+}
+
+/// Reads the list.
+fn listed(args: &ViewsArgs) -> Result<ViewFiles, Failure> {
+    let list = ViewList::read(&args.cameras, args.picture.reading.strict).map_err(Failure::input)?;
+    let views = ViewFiles { list, folder: args.output.clone(), exposes_each: args.exposure_per_view };
+    match args.only.as_ref().map(FrameList::last).filter(|last| *last > views.count()) {
+        Some(last) => Err(Failure::usage(anyhow!(
+            "--only: there is no view {last}; {} has {} cameras, counted from 1",
+            args.cameras.display(),
+            views.count()
+        ))),
+        None => Ok(views),
+    }
+}
+
+/// Returns the numbers of the views to render.
+fn numbers(only: Option<&FrameList>, count: usize) -> impl Iterator<Item = usize> {
+    let all = only.is_none().then_some(1..=count);
+    only.into_iter().flat_map(FrameList::iter).chain(all.into_iter().flatten())
+}
+
+/// Checks that the files can be written. The folder is made if it alone is missing, and the folders below it are.
+fn check_files(job: &WalkJob, check: OutputCheck, no_overwrite: bool) -> Result<(), Failure> {
+    let Some(views) = job.shots.views() else { return Ok(()) };
+    check_output(&views.folder.join("view.exr"), check)?;
+    for number in numbers(job.frames.as_ref(), views.count()) {
+        let (exr, png) = job.files(number);
+        if let Some(folder) = exr.parent().filter(|folder| !folder.exists()) {
+            if check.is_dry {
+                continue;
+            }
+            let made = fs::create_dir_all(folder);
+            made.with_context(|| format!("cannot make {}", folder.display())).map_err(Failure::output)?;
+        }
+        check_outputs(Some(&exr), png.as_deref(), check)?;
+        if no_overwrite {
+            check_new([&exr].into_iter().chain(&png).map(PathBuf::as_path))?;
+        }
+    }
+    Ok(())
+}
