@@ -9,7 +9,7 @@ use crate::error::{Location, SceneError};
 use crate::file::read_text;
 use serde::Deserialize;
 use std::path::Path;
-use toml::Spanned;
+use toml::{Spanned, Table, Value};
 
 /// Keys of a list.
 #[derive(Debug, Deserialize)]
@@ -43,6 +43,11 @@ struct ViewText {
 pub fn read(path: &Path) -> Result<Vec<DraftView>, SceneError> {
     let (text, _) = read_text(path, &Location::file(path))?;
     let file = SourceText { path, text: &text };
+    let is_table = |table: Table| table.get("camera").is_some_and(Value::is_table);
+    if text.parse().is_ok_and(is_table) {
+        let what = "`camera` is a single table, as in a scene";
+        return Err(Location::file(path).wrong(what, "write [[camera]] in double brackets for each view"));
+    }
     let list: ListText = toml::from_str(&text).map_err(|error| mistake::of(file, &error))?;
     let shared = film(file, list.resolution.as_ref())?;
     list.camera.into_iter().map(|view| self::view(file, view, shared)).collect()

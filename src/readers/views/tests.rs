@@ -156,6 +156,7 @@ fn lists_in_toml_have_the_cameras_of_scenes() {
         (&format!("resolution = [0, 1]\n{camera}"), "views.toml:1: the resolution is 0 x 1"),
         ("[[camera]]\norigin = [0, 0, 5]", "views.toml:1: a camera of a list has no origin or no target"),
         ("[[camera]]\norigin = [0, 0, 5]\ntarget = [0, 0, 5]", "looks nowhere"),
+        ("[camera]\nfov = 3", "views.toml: `camera` is a single table"),
         ("mesh = 3", "unknown field `mesh`"),
     ] {
         let error = list("views.toml", text).unwrap_err().to_string();

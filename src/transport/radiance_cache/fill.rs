@@ -77,7 +77,7 @@ impl<'a> CacheFrame<'a> {
     ) {
         let count = self.targets.points.len();
         let mut level = FIRST_LEVEL;
-        let reach = source.settings().farthest();
+        let (reach, least_lacking) = (source.settings().farthest(), source.settings().least_lacking);
         while count >> level >= source.settings().least_cell.max(1) as usize {
             for parity in 0..2 {
                 if control.is_cancelled() {
@@ -89,7 +89,7 @@ impl<'a> CacheFrame<'a> {
                         &self.splats,
                         self.cached,
                         reach,
-                        CandidateStep { level, parity },
+                        CandidateStep { level, parity, least_lacking },
                     )
                 });
                 let (new, cuts) = stats.time(Stage::Records, || source.records(&candidates));

@@ -26,6 +26,8 @@ pub struct CandidateStep {
     pub level: u32,
     /// Number of each cell modulo 2, 0 or 1.
     pub parity: usize,
+    /// Minimum share of a cell's samples that must be uncovered.
+    pub least_lacking: f32,
 }
 
 /// Returns the layers among `cached` whose records have no more than the sum of weights `max_weight` at a sample that
@@ -52,7 +54,7 @@ pub fn candidates(
     reach: f32,
     step: CandidateStep,
 ) -> Vec<Candidate> {
-    let CandidateStep { level, parity } = step;
+    let CandidateStep { level, parity, least_lacking } = step;
     let cells = (1usize << level) / 2;
     (0..cells.max(1))
         .into_par_iter()
@@ -65,7 +67,7 @@ pub fn candidates(
                 sum += targets.points.geometry[i].position;
                 count += 1.0;
             }
-            if count == 0.0 {
+            if count == 0.0 || count < least_lacking * range.len() as f32 {
                 return None;
             }
             let middle = sum / count;
@@ -138,7 +140,13 @@ mod tests {
         for level in 0..6 {
             let mut cells = Vec::new();
             for parity in 0..2 {
-                let found = candidates(&targets, &splats, BOTH, REACH, CandidateStep { level, parity });
+                let found = candidates(
+                    &targets,
+                    &splats,
+                    BOTH,
+                    REACH,
+                    CandidateStep { level, parity, least_lacking: 0.0 },
+                );
                 assert_eq!(found.len(), (1 << level) / 2 + usize::from(level == 0));
                 for (pair, candidate) in found.iter().enumerate() {
                     let cell = if level == 0 { 0 } else { 2 * pair + parity };
@@ -168,7 +176,13 @@ mod tests {
         let all = |cached| -> Vec<Candidate> {
             (0..2)
                 .flat_map(|parity| {
-                    candidates(&targets, &splats, cached, REACH, CandidateStep { level: 10, parity })
+                    candidates(
+                        &targets,
+                        &splats,
+                        cached,
+                        REACH,
+                        CandidateStep { level: 10, parity, least_lacking: 0.0 },
+                    )
                 })
                 .collect()
         };
@@ -184,9 +198,35 @@ mod tests {
         assert!(direct.len() == 512 && direct.iter().all(|c| c.point.position.x > 0.5));
         assert_eq!(all(one(Origin::Indirect)).len(), 1024);
         // The middle of the uncovered samples, not of the cell.
-        let coarse =
-            candidates(&targets, &splats, one(Origin::Direct), REACH, CandidateStep { level: 0, parity: 0 });
+        let coarse = candidates(
+            &targets,
+            &splats,
+            one(Origin::Direct),
+            REACH,
+            CandidateStep { level: 0, parity: 0, least_lacking: 0.0 },
+        );
         assert!(coarse.len() == 1 && (coarse[0].point.position - Vec3::new(0.75, 0.5, 0.0)).length() < 0.04);
+    }
+
+    #[test]
+    fn cells_that_lack_little_light_get_no_candidate() {
+        let floor = Floor::grid(32);
+        let targets = floor.targets();
+        let splats = splats(&targets, &half(Origin::Indirect, Rgb::ONE));
+        let cached = DirectIndirect { direct: false, indirect: true };
+        let count = |level, least_lacking| -> usize {
+            let step = |parity| CandidateStep { level, parity, least_lacking };
+            (0..2).map(|parity| candidates(&targets, &splats, cached, REACH, step(parity)).len()).sum()
+        };
+        // Half of the floor is covered: cells of one sample are covered, or lack all light.
+        let root = CandidateStep { level: 0, parity: 0, least_lacking: 0.51 };
+        assert!(candidates(&targets, &splats, cached, REACH, root).is_empty());
+        assert_eq!(
+            candidates(&targets, &splats, cached, REACH, CandidateStep { least_lacking: 0.5, ..root }).len(),
+            1
+        );
+        assert_eq!([0.0, 0.25, 1.0].map(|least| count(10, least)), [512; 3]);
+        assert!(count(1, 0.0) >= count(1, 0.25) && count(1, 0.25) >= count(1, 0.9));
     }
 
     #[test]
@@ -199,7 +239,13 @@ mod tests {
         let albedo = luminance(floor.points.surfaces[0].bsdf.base_brdf() * std::f32::consts::PI);
         let (mut bright, mut dark) = (0, 0);
         for parity in 0..2 {
-            for found in candidates(&targets, &splats, BOTH, REACH, CandidateStep { level: 6, parity }) {
+            for found in candidates(
+                &targets,
+                &splats,
+                BOTH,
+                REACH,
+                CandidateStep { level: 6, parity, least_lacking: 0.0 },
+            ) {
                 let cell = floor.index.range(6, 0).len();
                 let wider = floor.index.range(4, found.sample as usize / (4 * cell));
                 if wider.clone().all(lit) {
@@ -213,7 +259,13 @@ mod tests {
             }
         }
         assert_eq!((bright, dark), (32, 0), "the middle of the floor divides cells of that level");
-        let coarse = candidates(&targets, &splats, BOTH, REACH, CandidateStep { level: 0, parity: 0 });
+        let coarse = candidates(
+            &targets,
+            &splats,
+            BOTH,
+            REACH,
+            CandidateStep { level: 0, parity: 0, least_lacking: 0.0 },
+        );
         assert_eq!(coarse[0].baseline_luminance, 0.0);
     }
 
@@ -224,7 +276,13 @@ mod tests {
         targets.cacheable.fill(false);
         targets.cacheable[11] = true;
         let splats = splats(&targets, &Records::default());
-        let found = candidates(&targets, &splats, BOTH, REACH, CandidateStep { level: 0, parity: 0 });
+        let found = candidates(
+            &targets,
+            &splats,
+            BOTH,
+            REACH,
+            CandidateStep { level: 0, parity: 0, least_lacking: 0.0 },
+        );
         assert!(found.len() == 1 && found[0].sample == 11);
     }
 }

@@ -99,6 +99,8 @@ settings! {
         /// Minimum number of eye samples in a cell of the kd-tree that gets a record. Smaller cells use cuts or final
         /// gathering.
         least_cell: u32 = 256 => [.at_least(1.0).scaled(&UP)];
+        /// Minimum share of the eye samples in a cell that records must lack, for the cell to get a record.
+        least_lacking: f32 = 0.0;
         /// Approximate number of patches of the eye samples without records. Sixteen samples of each share a cut,
         /// which is reconstructed at the others. The cost of cuts is proportional to it at any resolution.
         patches: u32 = 4096 => [is PATCHES];
@@ -120,6 +122,9 @@ const WALK_EXTRA_SAMPLES: f32 = 0.2;
 /// and should find the records of the last frame.
 const WALK_REACH: f32 = 2.0;
 
+/// Minimum share of the eye samples in a cell that must lack light, for the cell to get a record, in views of a list.
+const VIEWS_LACKING: f32 = 0.25;
+
 impl CacheSettings {
     /// Returns the settings for a frame of a walk-through, whose records later frames will use.
     pub fn for_walk(&self) -> CacheSettings {
@@ -130,6 +135,14 @@ impl CacheSettings {
             *least = (*least * WALK_REACH).min(*largest);
         }
         settings
+    }
+
+    /// Returns the settings for a view of a list, which has the records of former views.
+    ///
+    /// A still gives a record to every cell that lacks light anywhere. If most of a cell has light already, the rest is
+    /// mostly fine detail, which a record hardly covers.
+    pub fn for_views(&self) -> CacheSettings {
+        CacheSettings { least_lacking: VIEWS_LACKING, ..*self }
     }
 
     /// Returns the maximum radius of any footprint, in spacings of eye samples.

@@ -101,7 +101,8 @@ impl Settings {
         let FormerFrames { records, settled, thresholds, outlook } = former;
         if let Some(outlook) = outlook {
             let lit = LitSurfaces::Seen(&outlook.points);
-            return FrameInputs { kept: Some(records), lit, ..self.still(view) };
+            let cache = self.record_settings().for_views();
+            return FrameInputs { cache, kept: Some(records), lit, ..self.still(view) };
         }
         let cache = self.record_settings().for_walk();
         let (kept, lit) = (Some(records), LitSurfaces::All);
