@@ -15,8 +15,8 @@ use std::path::PathBuf;
 #[derive(Debug, Args)]
 #[command(after_long_help = exit::HELP)]
 pub struct ViewsArgs {
-    /// Scene file: glTF (.glb, .gltf), mesh (.obj, .ply, .stl), lightsplat TOML (.toml) or Mitsuba (.xml), or the name of
-    /// a built-in scene
+    /// Scene file: glTF (.glb, .gltf), mesh (.obj, .ply, .stl), lightsplat TOML (.toml) or Mitsuba (.xml), or the name
+    /// of a built-in scene
     pub scene: PathBuf,
     /// Cameras, in the coordinates of the scene: the transforms.json of a NeRF data set, a TOML list, or a glTF model
     /// (.glb, .gltf), all of whose cameras are rendered

@@ -75,7 +75,8 @@ pub fn walk(job: &WalkJob, opened: &Opened, span: RunSpan, control: &Control) ->
         talk::event("frame", || json!({ "frame": number, "state": "skipped" }));
     }
     let count = chunks.iter().map(PlannedChunk::count).sum();
-    let outlook = listed.filter(|_| count > 0).map(|listed| listed.outlook(session, control));
+    let outlook =
+        listed.filter(|_| count > 0).map(|listed| listed.outlook(session, job.chunk_size(*moves), control));
     let outlook = outlook.as_ref();
     let progress = Watch::new(job.progress, RunProgress::new(count, Stages::of(&job.goal), span));
     let (warnings, said) = (warnings.len(), BTreeSet::new());

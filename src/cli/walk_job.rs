@@ -182,9 +182,17 @@ impl WalkJob {
         }
     }
 
-    /// Divides the frames into chunks, and decides which frames to render.
+    /// Returns the number of frames per chunk; `None` for one chunk.
     ///
     /// If the model moves, each frame is a chunk. Each reproducible view is a chunk, too: it depends on no other view.
+    pub fn chunk_size(&self, moves: bool) -> Option<NonZeroUsize> {
+        // Without records, frames do not depend on each other.
+        let is_alone = moves || self.shots.views().is_some() && self.reproducible;
+        let has_records = self.goal.method.as_walks().is_some() && !is_alone;
+        if has_records { self.chunk } else { NonZeroUsize::new(1) }
+    }
+
+    /// Divides the frames into chunks, and decides which frames to render.
     ///
     /// # Errors
     /// If the scene has no camera path, or a frame lies beyond it.
@@ -201,11 +209,8 @@ impl WalkJob {
             ]),
         );
         let views = self.shots.views();
+        let size = self.chunk_size(moves);
         let key = views.map_or(key.clone(), |views| job_key::of_views(&key, &views.list, views.exposes_each));
-        // Without records, frames do not depend on each other.
-        let is_alone = moves || views.is_some() && self.reproducible;
-        let has_records = self.goal.method.as_walks().is_some() && !is_alone;
-        let size = if has_records { self.chunk } else { NonZeroUsize::new(1) };
         let length = views.map_or(session.cameras.path.len(), ViewFiles::count);
         let chunks = chunk::chunks(&numbers, size, length);
         Ok(chunks.into_iter().map(|chunk| self.planned(chunk, &key)).collect())

@@ -9,6 +9,7 @@ mod lights;
 mod memo;
 mod outlook;
 pub mod output;
+mod overlap;
 pub mod path;
 pub mod photon_cache;
 mod photon_store;

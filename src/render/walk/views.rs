@@ -7,6 +7,7 @@ use crate::session::Session;
 use base::progress::Control;
 use readers::{SceneError, SceneView, ViewList};
 use scene::Cameras;
+use std::num::NonZeroUsize;
 use world::view::{Framing, FramingError, View};
 
 pub use crate::method::Outlook;
@@ -45,9 +46,10 @@ impl ListedViews {
         &self.views
     }
 
-    /// Finds the surfaces that the views see together.
-    pub fn outlook(&self, session: &Session, control: &Control) -> Outlook {
-        Outlook::new(&session.world, &self.views, control)
+    /// Finds the surfaces that the views see together. Chunks of `chunk` views share records; without it all do.
+    pub fn outlook(&self, session: &Session, chunk: Option<NonZeroUsize>, control: &Control) -> Outlook {
+        let count = chunk.map_or(self.views.len(), NonZeroUsize::get);
+        Outlook::new(&session.world, &self.views, control).in_chunks(count)
     }
 }
 

@@ -137,12 +137,14 @@ impl CacheSettings {
         settings
     }
 
-    /// Returns the settings for a view of a list, which has the records of former views.
+    /// Returns the settings for a view of a list, which has the records of former views. `overlap` is the mean number
+    /// of views that see a surface, over which the cost of a record is amortised.
     ///
     /// A still gives a record to every cell that lacks light anywhere. If most of a cell has light already, the rest is
     /// mostly fine detail, which a record hardly covers.
-    pub fn for_views(&self) -> CacheSettings {
-        CacheSettings { least_lacking: VIEWS_LACKING, ..*self }
+    pub fn for_views(&self, overlap: f32) -> CacheSettings {
+        let least_cell = self.least_cell as f32 / overlap.clamp(1.0, WALK_FRAMES as f32);
+        CacheSettings { least_cell: (least_cell as u32).max(1), least_lacking: VIEWS_LACKING, ..*self }
     }
 
     /// Returns the maximum radius of any footprint, in spacings of eye samples.
