@@ -18,8 +18,8 @@ pub struct ViewsArgs {
     /// Scene file: glTF (.glb, .gltf), mesh (.obj, .ply, .stl), lightsplat TOML (.toml) or Mitsuba (.xml), or the name
     /// of a built-in scene
     pub scene: PathBuf,
-    /// Cameras, in the coordinates of the scene: the transforms.json of a NeRF data set, a TOML list, or a glTF model
-    /// (.glb, .gltf), all of whose cameras are rendered
+    /// Cameras in the coordinates of the scene: the transforms.json of a NeRF data set, or a TOML list. A glTF model
+    /// (.glb, .gltf) stands for all of its cameras
     pub cameras: PathBuf,
     /// Folder of the images. The name of an image is its `file_path` in the list, or the name of its camera
     #[arg(short, long, value_name = "FOLDER")]
