@@ -11,8 +11,9 @@ mod transforms;
 use crate::draft::{DraftCamera, DraftView};
 use crate::error::{Location, Log, SceneError, Warning};
 use crate::file::fnv1a;
-use crate::finish::recentre::LocalCoordinates;
+
 use crate::finish::sanitize::check_camera;
+use crate::local::LocalCoordinates;
 use crate::{gltf, native};
 use scene::{Camera, MAX_FRAMES, Scene};
 use std::path::{Path, PathBuf};
