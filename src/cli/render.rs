@@ -99,7 +99,7 @@ pub fn still(job: &RenderJob, opened: &Opened, span: RunSpan, control: &Control)
         stats.count("Memory/peak resident [MiB]", bytes >> 20);
     }
     match job.stats {
-        Some(StatsFormat::Text) => talk::print(&stats.to_text())?,
+        Some(StatsFormat::Text) => talk::print(&stats.to_text(job.threads))?,
         Some(StatsFormat::Json) => {
             let mut report = stats.to_json();
             report["run"] = facts;

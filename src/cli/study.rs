@@ -90,7 +90,9 @@ fn failure(error: StudyError) -> Failure {
         | StudyError::Unreadable { .. }
         | StudyError::Figures { .. } => Failure::input(error),
         StudyError::Knob { .. } => Failure::usage(error),
-        StudyError::Open(OpenError::Build { .. }) | StudyError::Denoise(_) => Failure::render(error),
+        StudyError::Open(OpenError::Build { .. }) | StudyError::Denoise(_) | StudyError::Threads { .. } => {
+            Failure::render(error)
+        }
         StudyError::File { .. } | StudyError::Write(_) => Failure::output(error),
         StudyError::Interrupted => Failure::interrupted(error),
     }

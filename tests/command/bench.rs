@@ -80,7 +80,7 @@ fn the_study_of_growth_tells_time_by_pixels_and_error_by_lamps() {
     let common = ["bench", "growth", "cornell", "--scenes", SCENES, "-o", "out", "--resolution", "16x16"];
     let found = sandbox.run(&[&common[..], &["--knob", "width"]].concat()).expect(2);
     assert!(found.stderr.contains("pixels, lamps, triangles"), "{}", found.stderr);
-    let knobs = ["--knob", "pixels", "--knob", "lamps", "--reference-spp", "1024"];
+    let knobs = ["--knob", "pixels", "--knob", "lamps", "--knob", "threads", "--reference-spp", "1024"];
     sandbox.run(&[&common[..], &knobs].concat()).expect(0);
     let read = |file: &str| fs::read_to_string(sandbox.path(file)).unwrap();
     assert!(read("out/growth.md").contains("## Lamps") && read("out/growth.html").contains("<svg"));
@@ -92,6 +92,7 @@ fn the_study_of_growth_tells_time_by_pixels_and_error_by_lamps() {
     assert_eq!(values(0, "value"), [16.0, 64.0, 256.0, 1024.0, 4096.0]);
     assert_eq!(values(1, "value"), [1.0, 10.0, 100.0, 1000.0]);
     assert!(values(1, "error").iter().all(|error| *error > 0.0 && *error < 1.0));
+    assert_eq!([&json["threads"][0]["threads"], &json["threads"][0]["speed_up"]], [1.0, 1.0]);
     assert!(values(0, "whole").iter().zip(values(0, "eye_pass")).all(|(whole, part)| *whole > part));
 }
 

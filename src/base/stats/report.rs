@@ -10,19 +10,21 @@ fn unsigned_zero(x: f64) -> f64 {
 }
 
 impl Stats {
-    /// Returns an aligned table: stage times first, then counters by group.
-    pub fn to_text(&self) -> String {
+    /// Returns an aligned table: stage times first, then counters by group. The last column of the times is the share
+    /// of the time of `threads` threads in which they worked.
+    pub fn to_text(&self, threads: usize) -> String {
         let mut text = String::new();
         // Writing to a String cannot fail, hence the `let _`.
         if self.stages().next().is_some() {
-            let _ = writeln!(text, "{:<34}{:>12}{:>12}", "Time", "wall s", "CPU s");
+            let _ = writeln!(text, "{:<34}{:>12}{:>12}{:>8}", "Time", "wall s", "CPU s", "busy %");
             for (stage, time) in self.stages() {
                 let _ = writeln!(
                     text,
-                    "  {:<32}{:>12.3}{:>12.3}",
+                    "  {:<32}{:>12.3}{:>12.3}{:>8.0}",
                     stage.name(),
                     time.wall_seconds,
-                    time.cpu_seconds
+                    time.cpu_seconds,
+                    100.0 * time.busy(threads)
                 );
             }
         }
@@ -107,9 +109,11 @@ mod tests {
 
     #[test]
     fn text_groups_counters_under_one_heading() {
-        let text = example().to_text();
+        let text = example().to_text(4);
         assert_eq!(text.matches("Rays\n").count(), 1, "{text}");
         assert!(text.contains("1 234 567"), "{text}");
+        // Half of four threads worked.
+        assert!(text.lines().any(|line| line.ends_with("1.500       3.000      50")), "{text}");
         assert!(text.contains("4.50  (3 to 6, of 2)"), "{text}");
         assert!(text.contains("light pass") && !text.contains("-0.0"), "{text}");
     }

@@ -93,6 +93,11 @@ pub struct StageTime {
 }
 
 impl StageTime {
+    /// Returns the share of the time of `threads` threads in which they worked; 0 if no time passed.
+    pub fn busy(self, threads: usize) -> f64 {
+        self.cpu_seconds / (threads as f64 * self.wall_seconds).max(1e-9)
+    }
+
     /// Returns the time minus that of `part`.
     pub fn without(self, part: StageTime) -> StageTime {
         StageTime {

@@ -7,6 +7,7 @@
 
 mod forest;
 mod scenes;
+mod threads;
 
 use super::plot::{Colour, Series, scatter};
 use super::study::{
@@ -87,7 +88,7 @@ fn at_equal_time(shot: &Shot) -> Option<f64> {
 }
 
 fn run(study: &Study, files: &[PathBuf]) -> Result<Results, StudyError> {
-    let knobs = study.plan.knobs(&["pixels", "lamps", "triangles", "instances"])?;
+    let knobs = study.plan.knobs(&["pixels", "lamps", "triangles", "instances", "threads"])?;
     let of = |knob| Question { axis: Axis::Value(knob), ..QUESTION };
     let default = [Candidate::new("default", Method::default())];
     let noisy = default.clone().map(|candidate| Candidate { denoise: false, ..candidate });
@@ -111,6 +112,9 @@ fn run(study: &Study, files: &[PathBuf]) -> Result<Results, StudyError> {
         let scenes = TREES.iter().map(|&count| woods(study, count));
         let answer = study.ask(Question { images: &default, ..of("triangles seen") }, scenes)?;
         section(&mut results, "Trees of a forest", &answer);
+    }
+    for file in files.iter().filter(|_| knobs.contains(&"threads")) {
+        threads::measure(study, file, &mut results)?;
     }
     Ok(results)
 }

@@ -58,6 +58,14 @@ pub enum StudyError {
     /// An image cannot be denoised.
     #[error(transparent)]
     Denoise(DenoiseError),
+    /// Threads cannot be started.
+    #[error("cannot start {threads} threads; try fewer with --threads: {source}")]
+    Threads {
+        /// Number asked for.
+        threads: usize,
+        /// Reason.
+        source: rayon::ThreadPoolBuildError,
+    },
     /// The study was cancelled.
     #[error("interrupted; rendered images are kept, and the same command goes on from there")]
     Interrupted,

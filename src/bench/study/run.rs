@@ -5,7 +5,7 @@ use super::{Candidate, Counted, Study, StudyError, Subject};
 use base::film::Image;
 use base::stats::{Stage, Stats, Stopwatch};
 use embree::BuildQuality;
-use render::method::LightStore;
+use render::method::{LightStore, Output};
 use render::session::{Finish, Goal};
 use render::walk::{RetentionLimits, Walk};
 use serde_json::json;
@@ -99,25 +99,11 @@ impl Study<'_> {
 
     /// Renders several times and returns the run that took the least processor time.
     fn render(&self, subject: &Subject, candidate: &Candidate, repeats: usize) -> Result<Run, StudyError> {
-        let Subject { session, view, .. } = subject;
         let mut best: Option<Run> = None;
         for _ in 0..repeats.max(1) {
-            let goal = Goal { denoise: Some(candidate.denoise && self.denoises()), ..Goal::default() };
-            let mut stats = Stats::new();
-            let finish = Finish::new(&session.world, view, &goal, self.control, &mut stats);
-            let method = finish.guided(candidate.method);
-            let output = method.render(&session.world, &LightStore::default(), view, self.control);
-            let mut output = finish.apply(&method, output);
-            let failure = output.denoised.as_ref().and_then(|denoised| denoised.as_ref().err());
-            if let Some(error) = finish.load_error().or(failure) {
-                return Err(StudyError::Denoise(error.clone()));
-            }
-            if !output.complete {
-                return Err(StudyError::Interrupted);
-            }
-            stats.merge(&output.stats);
+            let mut output = self.render_once(subject, candidate)?;
             let nonfinite = output.nonfinite + output.color.remove_nonfinite();
-            let run = Run { color: output.color, counted: Counted::new(&stats, nonfinite) };
+            let run = Run { color: output.color, counted: Counted::new(&output.stats, nonfinite) };
             let seconds = |run: &Run| run.counted.seconds(&Stage::ALL);
             if best.as_ref().is_none_or(|best| seconds(&run) < seconds(best)) {
                 best = Some(run);
@@ -125,5 +111,26 @@ impl Study<'_> {
         }
         // The first run is `None` only if it was interrupted.
         best.ok_or(StudyError::Interrupted)
+    }
+
+    /// Renders once with virtual lights of its own, and returns the image with all of its statistics.
+    pub fn render_once(&self, subject: &Subject, candidate: &Candidate) -> Result<Output, StudyError> {
+        let Subject { session, view, .. } = subject;
+        let goal = Goal { denoise: Some(candidate.denoise && self.denoises()), ..Goal::default() };
+        let mut stats = Stats::new();
+        let finish = Finish::new(&session.world, view, &goal, self.control, &mut stats);
+        let method = finish.guided(candidate.method);
+        let output = method.render(&session.world, &LightStore::default(), view, self.control);
+        let mut output = finish.apply(&method, output);
+        let failure = output.denoised.as_ref().and_then(|denoised| denoised.as_ref().err());
+        if let Some(error) = finish.load_error().or(failure) {
+            return Err(StudyError::Denoise(error.clone()));
+        }
+        if !output.complete {
+            return Err(StudyError::Interrupted);
+        }
+        stats.merge(&output.stats);
+        output.stats = stats;
+        Ok(output)
     }
 }
