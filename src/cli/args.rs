@@ -1,23 +1,20 @@
 //! Arguments of the command line. `--help` prints the doc comments of this file.
 
 use super::bench_args::BenchArgs;
-use super::denoise_args::{DenoiseArgs, DenoiseFileArgs};
+use super::denoise_args::DenoiseFileArgs;
 use super::develop::DevelopArgs;
 use super::exit;
 use super::generate_args::GenerateArgs;
-use super::live_args::LiveArgs;
 use super::method_args::MethodArgs;
+use super::picture_args::{PictureArgs, StatsFormat};
 use super::plan_args::{PlanArgs, Quality};
 use super::png_args::{PngArgs, ToneArgs};
 use super::reading_args::ReadingArgs;
 use super::short_help::shortened;
-use super::values::{
-    Bytes, Crop, ImageFormat, Loudness, ProgressMode, Resolution, counted, feature, q_scale,
-};
+use super::values::{Bytes, ImageFormat, ProgressMode, counted, q_scale};
 use super::views_args::ViewsArgs;
 use super::{talk, threads, version};
 use clap::{Arg, ArgGroup, Args, CommandFactory, FromArgMatches, Parser, Subcommand, ValueEnum};
-use render::session::Feature;
 use render::walk::{FileNames, FrameList, Q_SCALE, RetentionLimits};
 use std::ffi::OsString;
 use std::num::NonZeroUsize;
@@ -133,69 +130,6 @@ pub struct RenderArgs {
     /// Measurement of the error.
     #[command(flatten)]
     pub verify: VerifyArgs,
-}
-
-/// Options of all commands that render images.
-#[derive(Debug, Args)]
-pub struct PictureArgs {
-    /// Number of threads. The image does not depend on it [default: number of processors]
-    #[arg(short, long, env = threads::VARIABLE, value_parser = clap::value_parser!(u32).range(1..=4096))]
-    pub threads: Option<u32>,
-    /// Image size in pixels. W or xH alone keeps the aspect ratio of the scene, N% scales its size [default: from the
-    /// scene]
-    #[arg(short, long, visible_alias = "size", value_name = "WxH|W|N%")]
-    pub resolution: Option<Resolution>,
-    /// Render only this rectangle, in pixels from the top-left corner. With path and lightcuts, the pixels equal the
-    /// pixels of the full image. With other methods, they differ by about 1 %
-    #[arg(long, value_name = "X,Y,W,H")]
-    pub crop: Option<Crop>,
-    /// Additional layers that describe the visible surfaces. At mirrors and glass, they describe the reflected or
-    /// refracted surface
-    #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = feature())]
-    pub aov: Vec<Feature>,
-    /// Denoising.
-    #[command(flatten)]
-    pub denoise: DenoiseArgs,
-    /// Previews.
-    #[command(flatten)]
-    pub live: LiveArgs,
-    /// Skip complete images of the same scene, settings and program version. Continue interrupted images of --method
-    /// path
-    #[arg(long)]
-    pub resume: bool,
-    /// Fail before rendering if an output file already exists
-    #[arg(long, conflicts_with = "resume")]
-    pub no_overwrite: bool,
-    /// Print the files that would be written, the resolution, the method and the memory, and write nothing. The command
-    /// ends with the error that the run would have before rendering
-    #[arg(long)]
-    pub dry_run: bool,
-    /// Leave times and the number of threads out of all files, so that equal renders give equal files
-    #[arg(long)]
-    pub reproducible: bool,
-    /// Form of progress and messages on standard error
-    #[arg(long, value_enum, env = talk::VARIABLE, default_value_t = ProgressMode::Auto)]
-    pub progress: ProgressMode,
-    /// Print only errors
-    #[arg(short, long, conflicts_with = "verbose")]
-    quiet: bool,
-    /// Print a line with the seconds of each stage
-    #[arg(short, long)]
-    verbose: bool,
-    /// Reading of the scene.
-    #[command(flatten)]
-    pub reading: ReadingArgs,
-}
-
-impl PictureArgs {
-    /// Returns how much is to be said.
-    pub fn loudness(&self) -> Loudness {
-        match (self.quiet, self.verbose) {
-            (true, _) => Loudness::Quiet,
-            (false, true) => Loudness::Verbose,
-            (false, false) => Loudness::Normal,
-        }
-    }
 }
 
 /// Options of `walk`.
@@ -384,15 +318,6 @@ pub struct CompareArgs {
     /// Print JSON
     #[arg(long)]
     pub json: bool,
-}
-
-/// Format of statistics.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum StatsFormat {
-    /// A table for people
-    Text,
-    /// One JSON object for programs
-    Json,
 }
 
 /// Error measure of a heatmap.

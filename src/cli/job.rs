@@ -1,9 +1,10 @@
 //! A render command, checked as far as possible before the scene is read.
 
-use super::args::{RenderArgs, StatsFormat};
+use super::args::RenderArgs;
 use super::exit::Failure;
 use super::live::Previews;
 use super::outputs::{Inputs, OutputCheck};
+use super::picture_args::StatsFormat;
 use super::still_files::StillFiles;
 use super::values::{ProgressMode, Resolution};
 use super::{job_key, threads, verify};

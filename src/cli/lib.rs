@@ -40,6 +40,7 @@ mod method_args;
 mod opened;
 mod outputs;
 mod picture;
+mod picture_args;
 mod plan_args;
 mod png_args;
 mod progress;

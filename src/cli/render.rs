@@ -1,12 +1,13 @@
 //! `lightsplat render`: opens a session, renders a frame and writes it. No file is left incomplete.
 
-use super::args::{RenderArgs, StatsFormat};
+use super::args::RenderArgs;
 use super::course::{RunProgress, RunSpan, Stages};
 use super::exit::Failure;
 use super::job::RenderJob;
 use super::job_key;
 use super::live::{Showing, ShownFrame};
 use super::outputs::{self, Inputs};
+use super::picture_args::StatsFormat;
 use super::progress::Watch;
 use super::{dry_run, interrupt, opened, picture, talk, threads};
 use anyhow::{Context, anyhow};

@@ -1,8 +1,8 @@
 //! Options of `views`. `--help` prints the doc comments of this file.
 
-use super::args::{PictureArgs, StatsFormat};
 use super::exit;
 use super::method_args::MethodArgs;
+use super::picture_args::{PictureArgs, StatsFormat};
 use super::plan_args::Quality;
 use super::png_args::ToneArgs;
 use super::values::{Bytes, counted};

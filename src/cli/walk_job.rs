@@ -1,10 +1,11 @@
 //! A walk command, checked as far as possible before the scene is read. The views of a list are a walk, too.
 
-use super::args::{PictureArgs, StatsFormat, WalkArgs};
+use super::args::WalkArgs;
 use super::exit::Failure;
 use super::live::Previews;
 use super::method_args::MethodArgs;
 use super::outputs::{OutputCheck, check_new, check_outputs};
+use super::picture_args::{PictureArgs, StatsFormat};
 use super::plan_args::{PlanArgs, Quality};
 use super::shots::{Shots, ViewFiles};
 use super::values::{ProgressMode, Resolution};

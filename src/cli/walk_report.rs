@@ -1,8 +1,8 @@
 //! Report of a walk: statistics of its frames on stdout, a summary on stderr.
 
-use super::args::StatsFormat;
 use super::chart::chart;
 use super::exit::Failure;
+use super::picture_args::StatsFormat;
 use super::talk;
 use base::stats::{Counter, Stage, StageTime, Stats};
 use render::session::RenderedFrame;

@@ -11,7 +11,6 @@ mod transforms;
 use crate::draft::{DraftCamera, DraftView};
 use crate::error::{Location, Log, SceneError, Warning};
 use crate::file::fnv1a;
-
 use crate::finish::sanitize::check_camera;
 use crate::local::LocalCoordinates;
 use crate::{gltf, native};
