@@ -140,9 +140,12 @@ impl CacheSettings {
     /// Returns the settings for a view of a list, which has the records of former views. `overlap` is the mean number
     /// of views that see a surface, over which the cost of a record is amortised.
     ///
-    /// A still gives a record to every cell that lacks light anywhere. If most of a cell has light already, the rest is
-    /// mostly fine detail, which a record hardly covers.
+    /// Without overlap, a view is a still. A still gives a record to every cell that lacks light anywhere. If most of a
+    /// cell has light already, the rest is mostly fine detail, which a record hardly covers.
     pub fn for_views(&self, overlap: f32) -> CacheSettings {
+        if overlap <= 1.0 {
+            return *self;
+        }
         let least_cell = self.least_cell as f32 / overlap.clamp(1.0, WALK_FRAMES as f32);
         CacheSettings { least_cell: (least_cell as u32).max(1), least_lacking: VIEWS_LACKING, ..*self }
     }
@@ -187,5 +190,20 @@ impl CacheSettings {
     /// Returns true if cuts light both layers.
     pub fn lights_by_cuts(&self) -> bool {
         self.direct == DirectBy::Cuts && self.indirect == FoundBy::Cuts
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn records_of_views_are_finer_the_more_views_overlap_and_views_alone_are_stills() {
+        let still = CacheSettings::default();
+        assert_eq!(format!("{:?}", still.for_views(1.0)), format!("{still:?}"));
+        let cells = [1.5, 2.0, 6.0, 8.0, 100.0].map(|overlap| still.for_views(overlap).least_cell);
+        assert!(cells[0] < still.least_cell && cells.is_sorted_by(|a, b| a >= b), "{cells:?}");
+        assert_eq!(cells[4], still.for_walk().least_cell);
+        assert!(CacheSettings { least_cell: 1, ..still }.for_views(9.0).least_cell >= 1);
     }
 }

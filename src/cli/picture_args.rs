@@ -1,0 +1,81 @@
+//! Options of all commands that render images. `--help` prints the doc comments of this file.
+
+use super::denoise_args::DenoiseArgs;
+use super::live_args::LiveArgs;
+use super::reading_args::ReadingArgs;
+use super::values::{Crop, Loudness, ProgressMode, Resolution, feature};
+use super::{talk, threads};
+use clap::{Args, ValueEnum};
+use render::session::Feature;
+
+/// Options of all commands that render images.
+#[derive(Debug, Args)]
+pub struct PictureArgs {
+    /// Number of threads. The image does not depend on it [default: number of processors]
+    #[arg(short, long, env = threads::VARIABLE, value_parser = clap::value_parser!(u32).range(1..=4096))]
+    pub threads: Option<u32>,
+    /// Image size in pixels. W or xH alone keeps the aspect ratio of the scene, N% scales its size [default: from the
+    /// scene]
+    #[arg(short, long, visible_alias = "size", value_name = "WxH|W|N%")]
+    pub resolution: Option<Resolution>,
+    /// Render only this rectangle, in pixels from the top-left corner. With path and lightcuts, the pixels equal the
+    /// pixels of the full image. With other methods, they differ by about 1 %
+    #[arg(long, value_name = "X,Y,W,H")]
+    pub crop: Option<Crop>,
+    /// Additional layers that describe the visible surfaces. At mirrors and glass, they describe the reflected or
+    /// refracted surface
+    #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = feature())]
+    pub aov: Vec<Feature>,
+    /// Denoising.
+    #[command(flatten)]
+    pub denoise: DenoiseArgs,
+    /// Previews.
+    #[command(flatten)]
+    pub live: LiveArgs,
+    /// Skip complete images of the same scene, settings and program version. Continue interrupted images of --method
+    /// path
+    #[arg(long)]
+    pub resume: bool,
+    /// Fail before rendering if an output file already exists
+    #[arg(long, conflicts_with = "resume")]
+    pub no_overwrite: bool,
+    /// Print the files that would be written, the resolution, the method and the memory, and write nothing. The command
+    /// ends with the error that the run would have before rendering
+    #[arg(long)]
+    pub dry_run: bool,
+    /// Leave times and the number of threads out of all files, so that equal renders give equal files
+    #[arg(long)]
+    pub reproducible: bool,
+    /// Form of progress and messages on standard error
+    #[arg(long, value_enum, env = talk::VARIABLE, default_value_t = ProgressMode::Auto)]
+    pub progress: ProgressMode,
+    /// Print only errors
+    #[arg(short, long, conflicts_with = "verbose")]
+    quiet: bool,
+    /// Print a line with the seconds of each stage
+    #[arg(short, long)]
+    verbose: bool,
+    /// Reading of the scene.
+    #[command(flatten)]
+    pub reading: ReadingArgs,
+}
+
+impl PictureArgs {
+    /// Returns how much is to be said.
+    pub fn loudness(&self) -> Loudness {
+        match (self.quiet, self.verbose) {
+            (true, _) => Loudness::Quiet,
+            (false, true) => Loudness::Verbose,
+            (false, false) => Loudness::Normal,
+        }
+    }
+}
+
+/// Format of statistics.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum StatsFormat {
+    /// A table for people
+    Text,
+    /// One JSON object for programs
+    Json,
+}
