@@ -220,10 +220,10 @@ impl Accel {
             let part = &lanes.0[first..first + width];
             if part.iter().any(|&lane| lane != 0) {
                 let packet = P::of(rays, first, ALL_GEOMETRY);
+                let to = HitLanes { hits: &mut *hits, first, numbers: self.placed_numbers() };
                 // SAFETY: the scene is committed; mask, packet and arguments are ours, outlive the call and have the
                 // library's layout (the version is checked). The mask is 64-byte aligned as a whole, and so its parts
                 // of 4 and 8 words as the packets of that width.
-                let to = HitLanes { hits: &mut *hits, first, numbers: self.placed_numbers() };
                 let bits = unsafe { packet.closest_hit(part.as_ptr(), self.scene(), &mut arguments, to) };
                 found |= bits << first;
             }

@@ -83,7 +83,7 @@ pub(crate) fn assemble(
     let is_stored = choose(&sizes, most_copied);
     let is_instance =
         |group: usize, to_world: &DMat4| is_stored[group] && magnified(to_world) <= MAX_MAGNIFIED;
-    reserve(contents, &sizes, &is_instance)?;
+    reserve(contents, &sizes, is_instance)?;
     let copy = |seen: &SeenPlan| match seen {
         SeenPlan::Group { group, to_world, name } if !is_instance(*group, to_world) => {
             copies(contents, &read, *group, to_world, name.as_deref())

@@ -77,7 +77,7 @@ fn paths_see_instances_as_copies() {
 fn the_default_sees_instances_as_copies() {
     let estimate = |world: &WorldAndView| -> Estimate {
         over_seeds(6, |seed| {
-            let mut method = small_methods()[0].1.clone();
+            let mut method = small_methods()[0].1;
             method.set("seed", &seed.to_string()).expect("a seed");
             by(world, &method)
         })

@@ -132,7 +132,7 @@ fn places(trees: u32, kind: u32) -> String {
         let [turn, size] = owen_sobol_2d(i, 2).to_array();
         let (sin, cos) = (turn * std::f32::consts::TAU).sin_cos();
         let size = 0.7 + 0.6 * size;
-        let [x, y] = if i % 4 == 0 { [-size, 1.2 * size] } else { [size, size] };
+        let [x, y] = if i.is_multiple_of(4) { [-size, 1.2 * size] } else { [size, size] };
         // Writing to a string cannot fail.
         let _ = writeln!(
             text,

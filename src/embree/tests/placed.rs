@@ -28,7 +28,7 @@ fn soup(random: &mut Random, count: u32) -> Mesh {
 fn places(random: &mut Random, count: usize) -> Vec<Placement> {
     let place = |i: usize| {
         let turn = Quat::from_axis_angle(random.point().normalize_or(Vec3::X), 3.0 * random.next());
-        let sign = if i % 3 == 0 { -1.0 } else { 1.0 };
+        let sign = if i.is_multiple_of(3) { -1.0 } else { 1.0 };
         let scale = Vec3::new(0.4, 0.3 + random.next(), 0.7 * sign);
         Placement(Affine3::from_scale_rotation_translation(scale, turn, 3.0 * random.point()))
     };
