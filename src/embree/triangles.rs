@@ -7,7 +7,7 @@ use glam::Vec3;
 /// Coordinate from which Embree leaves out a triangle (its `FLT_LARGE`).
 const COORDINATE_LIMIT: f32 = 1.844e18;
 
-/// Triangles to build from. [`Accel::build`] copies them.
+/// Triangles to build from. [`crate::Accel::build`] copies them.
 #[derive(Clone, Copy, Debug)]
 pub struct TriangleMesh<'a> {
     /// Vertex positions.
