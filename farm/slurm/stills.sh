@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Renders the images and walks of job files on a Slurm cluster: an array job with a task per entry.
+# Renders the images, walks and views of job files on a Slurm cluster: an array job with a task per entry.
 #   farm/slurm/stills.sh JOBS.toml...
 # common.sh lists the environment variables.
 set -euo pipefail

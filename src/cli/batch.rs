@@ -103,14 +103,14 @@ impl BatchRun {
         let done = self.count - self.failed;
         let what = if self.args.dry_run { "can be rendered" } else { "done" };
         talk::summary(
-            &format!("{done} of {} images and walks {what}", self.count),
+            &format!("{done} of {} images, walks and views {what}", self.count),
             || json!({ "done": done, "failed": self.failed }),
         );
         match self.failed {
             0 => Ok(()),
             failed => {
                 let others = if done > 0 { "; the others are complete" } else { "" };
-                let message = anyhow!("{failed} of {} images and walks failed{others}", self.count);
+                let message = anyhow!("{failed} of {} images, walks and views failed{others}", self.count);
                 Err(Failure::in_part(message))
             }
         }

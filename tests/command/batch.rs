@@ -93,7 +93,7 @@ fn scenes_are_read_once_and_resuming_renders_what_lacks() {
         1,
         "{stderr}"
     );
-    assert!(stderr.contains("3 of 3 images and walks done"), "{stderr}");
+    assert!(stderr.contains("3 of 3 images, walks and views done"), "{stderr}");
     let kept = ["a", "c"].map(|n| read(&sandbox.path(&format!("out/{n}.exr"))));
     fs::remove_file(sandbox.path("out/b.exr")).unwrap();
     let stderr = batch(&sandbox, &["--resume"]).expect(0).stderr;
