@@ -7,7 +7,11 @@ use std::process::ExitCode;
 #[global_allocator]
 static ALLOCATOR: MiMalloc = MiMalloc;
 
+/// Milliseconds for which the allocator keeps free memory.
+const KEPT_FREE: u16 = 1000;
+
 fn main() -> ExitCode {
     isa::is_checked();
+    allocator::keep_for(KEPT_FREE);
     lightsplat::cli::run(std::env::args_os())
 }
