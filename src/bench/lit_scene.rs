@@ -48,14 +48,16 @@ impl<'w> LitScene<'w> {
 
     /// Returns the surface at an eye sample, as lightcuts per pixel shade it.
     pub fn surface(&self, sample: usize) -> Receiver<'w> {
-        let (point, surface) = (&self.samples.points.geometry[sample], &self.samples.points.surfaces[sample]);
+        let (point, surface) =
+            (&self.samples.points.geometry[sample], self.samples.points.surfaces.get(sample));
         let frame = Frame::from_normal(point.normal);
         Receiver::new(point.position, surface.geometric_normal, &frame, surface.bsdf, surface.out)
     }
 
     /// Returns a receiver of irradiance at an eye sample, as records use it.
     pub fn irradiance(&self, sample: usize) -> Receiver<'static> {
-        let (point, surface) = (&self.samples.points.geometry[sample], &self.samples.points.surfaces[sample]);
+        let (point, surface) =
+            (&self.samples.points.geometry[sample], self.samples.points.surfaces.get(sample));
         Receiver::irradiance(point.position, surface.geometric_normal, &Frame::from_normal(point.normal))
     }
 

@@ -80,6 +80,7 @@ impl RenderJob {
             denoise: args.picture.denoise.denoise(),
             denoise_quality: args.picture.denoise.quality(),
             keep_noisy: args.picture.denoise.keep_noisy,
+            is_last: false,
             verify,
         };
         args.picture.denoise.check(goal.denoises())?;

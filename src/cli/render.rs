@@ -24,7 +24,8 @@ use world::view::View;
 pub fn run(args: RenderArgs) -> Result<(), Failure> {
     let run = Stopwatch::start();
     talk::start(args.picture.progress, args.picture.loudness(), "render");
-    let job = RenderJob::new(args, run)?;
+    let mut job = RenderJob::new(args, run)?;
+    job.goal.is_last = true;
     let control = Arc::new(Control::new());
     interrupt::cancel_on_signal(&control).context("cannot catch signals").map_err(Failure::render)?;
     threads::pool(job.threads)?.install(|| {

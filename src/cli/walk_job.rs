@@ -256,6 +256,7 @@ pub fn goal(method: &MethodArgs, quality: Option<Quality>, picture: &PictureArgs
         denoise: picture.denoise.denoise(),
         denoise_quality: Some(picture.denoise.quality().unwrap_or_default()),
         keep_noisy: picture.denoise.keep_noisy,
+        is_last: false,
         verify: None,
     };
     picture.denoise.check(goal.denoises())?;

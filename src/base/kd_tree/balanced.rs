@@ -28,6 +28,10 @@ pub struct Bounds {
 impl Bounds {
     const EMPTY: Bounds = Bounds { min: Vec3::INFINITY, max: Vec3::NEG_INFINITY };
 
+    fn around(items: &[(Vec3, u32)]) -> Bounds {
+        items.iter().fold(Bounds::EMPTY, |b, item| b.union(Bounds { min: item.0, max: item.0 }))
+    }
+
     fn union(self, other: Bounds) -> Bounds {
         Bounds { min: self.min.min(other.min), max: self.max.max(other.max) }
     }
@@ -72,11 +76,11 @@ impl KdTree {
         }
         sort(&mut items, count, 0, 0, depth, control);
         let mut index = KdTree { count, depth, bounds: vec![Bounds::EMPTY; 2 << depth] };
-        for leaf in 0..1usize << depth {
-            let box_of = |b: Bounds, item: &(Vec3, u32)| b.union(Bounds { min: item.0, max: item.0 });
-            index.bounds[(1 << depth) + leaf] =
-                items[index.range(depth, leaf)].iter().fold(Bounds::EMPTY, box_of);
-        }
+        let of_leaf = |leaf| Bounds::around(&items[range(count, depth, leaf)]);
+        index.bounds[1 << depth..]
+            .par_iter_mut()
+            .enumerate()
+            .for_each(|(leaf, bounds)| *bounds = of_leaf(leaf));
         for node in (1..1usize << depth).rev() {
             index.bounds[node] = index.bounds[2 * node].union(index.bounds[2 * node + 1]);
         }
@@ -140,10 +144,9 @@ fn sort(items: &mut [(Vec3, u32)], count: usize, level: u32, i: usize, depth: u3
     if level == depth || control.is_cancelled() {
         return;
     }
-    let (min, max) = items
-        .iter()
-        .fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(min, max), item| (min.min(item.0), max.max(item.0)));
-    let size = max - min;
+    // Minima and maxima are the same in any order.
+    let bounds = items.par_chunks(PARALLEL).map(Bounds::around).reduce(|| Bounds::EMPTY, Bounds::union);
+    let size = bounds.max - bounds.min;
     let axis = if size.x >= size.y && size.x >= size.z {
         0
     } else if size.y >= size.z {

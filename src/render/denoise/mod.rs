@@ -15,6 +15,9 @@ pub mod guides;
 
 use base::film::Image;
 use base::math::Rgb;
+use bytemuck::{cast_slice, cast_vec};
+use rayon::prelude::*;
+use std::borrow::Cow;
 
 pub use oidn::Error as DenoiseError;
 pub use oidn::Quality;
@@ -66,55 +69,77 @@ impl Denoiser {
     /// If the size of a guide is not that of the image, or the library fails.
     pub fn denoise(&self, color: &Image, guides: &Guides, quality: Quality) -> Result<Image, DenoiseError> {
         let radiance = |p: Rgb| p.map(|x| if x.is_finite() { x.max(0.0) } else { 0.0 });
-        let noisy = color.map(|p| radiance(*p));
-        if noisy.pixels.iter().all(|p| *p == Rgb::ZERO) {
-            return Ok(noisy);
+        let noisy = suited(&color.pixels, radiance);
+        let size = [color.width, color.height].map(|side| side as usize);
+        if noisy.iter().all(|p| *p == Rgb::ZERO) {
+            return Ok(Image { pixels: noisy.into_owned(), ..*color });
         }
-        let [width, height] = [color.width, color.height].map(|side| side.max(MIN_SIDE) as usize);
-        let within = |low: f32| move |p: Rgb| p.map(|x| if x.is_finite() { x.clamp(low, 1.0) } else { 0.0 });
-        let guide = |image: Option<&Image>, name, low| match image {
-            None => Ok(None),
-            Some(image) if [image.width, image.height] == [color.width, color.height] => {
-                Ok(Some(continued(image, [width, height], within(low))))
-            }
-            Some(image) => Err(DenoiseError::Size {
-                image: name,
-                size: [image.width as usize, image.height as usize],
-                picture: [color.width as usize, color.height as usize],
-            }),
-        };
-        let albedo = guide(guides.albedo, "albedo", 0.0)?;
-        let normal = guide(guides.normal, "normal", -1.0)?;
+        let extended = size.map(|side| side.max(MIN_SIDE as usize));
+        let albedo = guide(guides.albedo, "albedo", 0.0, [size, extended])?;
+        let normal = guide(guides.normal, "normal", -1.0, [size, extended])?;
         let scale = scale(&noisy);
+        let input = continued(suited(&noisy, |p| p * scale), size, extended);
         let clean = self.device.denoise(&oidn::Picture {
-            size: [width, height],
-            color: &continued(&noisy, [width, height], |p| p * scale),
-            albedo: albedo.as_deref(),
-            normal: normal.as_deref(),
+            size: extended,
+            color: cast_slice(&input),
+            albedo: albedo.as_deref().map(cast_slice),
+            normal: normal.as_deref().map(cast_slice),
             clean_guides: guides.noise_free,
             quality,
         })?;
-        let rows = clean.chunks_exact(width).take(color.height as usize);
-        let clean = rows.flat_map(|row| &row[..color.width as usize]).map(|&p| Rgb::from(p) / scale);
-        // The result must be finite even if the network overflows.
-        let finite = |(p, noisy): (Rgb, &Rgb)| if p.is_finite() { p.max(Rgb::ZERO) } else { *noisy };
-        let pixels = clean.zip(&noisy.pixels).map(finite).collect();
-        Ok(Image { pixels, ..noisy })
+        let mut pixels: Vec<Rgb> = cast_vec(clean);
+        if size != extended {
+            let rows = pixels.chunks_exact(extended[0]).take(size[1]);
+            pixels = rows.flat_map(|row| &row[..size[0]]).copied().collect();
+        }
+        pixels.par_iter_mut().zip(&*noisy).for_each(|(p, noisy)| {
+            let clean = *p / scale;
+            // The result must be finite even if the network overflows.
+            *p = if clean.is_finite() { clean.max(Rgb::ZERO) } else { *noisy };
+        });
+        Ok(Image { pixels, ..*color })
     }
 }
 
+/// Returns a guide with values from `low` to 1, extended from the size of the image to another size.
+fn guide<'a>(
+    image: Option<&'a Image>,
+    name: &'static str,
+    low: f32,
+    [size, extended]: [[usize; 2]; 2],
+) -> Result<Option<Cow<'a, [Rgb]>>, DenoiseError> {
+    let Some(image) = image else { return Ok(None) };
+    let own = [image.width, image.height].map(|side| side as usize);
+    if own != size {
+        return Err(DenoiseError::Size { image: name, size: own, picture: size });
+    }
+    let within = |p: Rgb| p.map(|x| if x.is_finite() { x.clamp(low, 1.0) } else { 0.0 });
+    Ok(Some(continued(suited(&image.pixels, within), size, extended)))
+}
+
 /// Returns the power of two that scales an image to ordinary brightness; 1 if it has that, so that its bits stay.
-fn scale(image: &Image) -> f32 {
-    let sum: f64 = image.pixels.iter().map(|p| p.as_dvec3().element_sum()).sum();
-    let exponent = (sum / (3 * image.pixels.len()) as f64).log2().floor().clamp(-120.0, 120.0);
+fn scale(pixels: &[Rgb]) -> f32 {
+    let sum: f64 = pixels.iter().map(|p| p.as_dvec3().element_sum()).sum();
+    let exponent = (sum / (3 * pixels.len()) as f64).log2().floor().clamp(-120.0, 120.0);
     if (-10.0..20.0).contains(&exponent) { 1.0 } else { (-exponent).exp2() as f32 }
 }
 
-/// Returns the image as three floats per pixel, extended to the right and downwards by its last column and row.
-fn continued(image: &Image, [width, height]: [usize; 2], value: impl Fn(Rgb) -> Rgb) -> Vec<[f32; 3]> {
-    let [right, bottom] = [image.width as usize - 1, image.height as usize - 1];
-    let at = |x: usize, y: usize| value(image.pixels[y.min(bottom) * (right + 1) + x.min(right)]).to_array();
-    (0..height).flat_map(|y| (0..width).map(move |x| (x, y))).map(|(x, y)| at(x, y)).collect()
+/// Returns the values of pixels. Pixels are copied only if a value differs: they take much of a large image's memory.
+fn suited(pixels: &[Rgb], value: impl Fn(Rgb) -> Rgb + Sync) -> Cow<'_, [Rgb]> {
+    let bits = |p: Rgb| p.to_array().map(f32::to_bits);
+    match pixels.par_iter().all(|p| bits(value(*p)) == bits(*p)) {
+        true => Cow::Borrowed(pixels),
+        false => Cow::Owned(pixels.par_iter().map(|p| value(*p)).collect()),
+    }
+}
+
+/// Returns an image of another size, extended to the right and downwards by its last column and row.
+fn continued(pixels: Cow<'_, [Rgb]>, from: [usize; 2], to: [usize; 2]) -> Cow<'_, [Rgb]> {
+    if from == to {
+        return pixels;
+    }
+    let at = |x: usize, y: usize| pixels[y.min(from[1] - 1) * from[0] + x.min(from[0] - 1)];
+    (0..to[1]).flat_map(|y| (0..to[0]).map(move |x| (x, y))).map(|(x, y)| at(x, y)).collect()
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! Store of virtual lights and photons, which methods share from frame to frame.
 
-use super::memo::{Memo, recall};
+use super::memo::{Memo, forget, recall};
 use super::photon_store::PhotonStore;
 use super::tally::Tally;
 use crate::method::Sampling;
@@ -32,6 +32,12 @@ pub struct LightStore {
 }
 
 impl LightStore {
+    /// Drops all lights and photons.
+    pub fn forget(&self) {
+        forget(&self.lights);
+        self.photons.forget();
+    }
+
     /// Returns the virtual lights of `world`, and makes them if others were made last.
     ///
     /// Lights are not stored if `control` is cancelled while they are made.

@@ -24,3 +24,8 @@ pub fn recall<K: PartialEq, V>(
     *stored = (!control.is_cancelled()).then(|| (key, Arc::clone(&value)));
     value
 }
+
+/// Drops the value of `memo`.
+pub fn forget<K, V>(memo: &Memo<K, V>) {
+    *memo.lock().unwrap_or_else(PoisonError::into_inner) = None;
+}

@@ -2,7 +2,7 @@
 //!
 //! Few photons are traced first. A pilot of the view's eye samples tells from them how many more reduce its noise.
 
-use super::memo::{Memo, recall};
+use super::memo::{Memo, forget, recall};
 use super::tally::Tally;
 use base::progress::Control;
 use base::stats::Stage;
@@ -117,6 +117,11 @@ impl PhotonStore {
             tally.shadow_rays("Rays/shadow", found.shadow_rays);
         }
         found.caustics
+    }
+
+    /// Drops all photons.
+    pub fn forget(&self) {
+        forget(&self.levels);
     }
 
     fn levels(&self, world: &World, settings: EyeSettings, control: &Control) -> Arc<PhotonLevels> {

@@ -6,7 +6,7 @@ use super::tally::Tally;
 use base::progress::Control;
 use base::stats::Stage;
 use std::sync::Arc;
-use transport::eye::{DirectSampling, EyePass, PointGeometry, PointSurface, ShadingPoints, TILE};
+use transport::eye::{DirectSampling, EyePass, ShadingPoints, TILE};
 use transport::lights::{Family, LightPassSettings, Lights};
 use world::view::View;
 use world::{SurfacePoint, World};
@@ -92,10 +92,10 @@ pub fn seen(world: &World, eye: &EyePass, most: usize) -> Vec<SurfacePoint> {
     }
     let ShadingPoints { geometry, surfaces } = &eye.points;
     let step = geometry.len().div_ceil(most.max(1)).max(MIN_STEP);
-    let point = |(geometry, surface): (&PointGeometry, &PointSurface)| SurfacePoint {
-        position: geometry.position,
-        normal: geometry.normal,
-        geometric_normal: surface.geometric_normal,
+    let point = |i: usize| SurfacePoint {
+        position: geometry[i].position,
+        normal: geometry[i].normal,
+        geometric_normal: surfaces.geometric_normal(i),
     };
-    geometry.iter().zip(surfaces).step_by(step).map(point).collect()
+    (0..geometry.len()).step_by(step).map(point).collect()
 }

@@ -11,7 +11,8 @@ use transport::eye::{Feature, FeatureSettings, Features, SeenPixels};
 use world::World;
 use world::view::View;
 
-/// Minimum number of pixels for which free memory is returned to the system before denoising.
+/// Minimum number of pixels for which free memory is returned to the system before denoising, unless the image is the
+/// last.
 ///
 /// The denoiser's library has an allocator of its own.
 const LARGE: u64 = 1 << 20;
@@ -23,6 +24,7 @@ pub struct Finish<'a> {
     control: &'a Control,
     /// Features that are kept as layers.
     features: Features,
+    is_last: bool,
     keep_noisy: bool,
     denoiser: Option<Denoiser>,
     /// Reason why the denoiser cannot be loaded.
@@ -49,8 +51,8 @@ impl<'a> Finish<'a> {
             Some(Err(error)) => (None, Some(error)),
             None => (None, None),
         };
-        let Goal { features, keep_noisy, denoise_quality: quality, .. } = *goal;
-        Finish { world, view, control, features, keep_noisy, denoiser, load_error, quality }
+        let Goal { features, is_last, keep_noisy, denoise_quality: quality, .. } = *goal;
+        Finish { world, view, control, features, is_last, keep_noisy, denoiser, load_error, quality }
     }
 
     /// Returns the reason why the denoiser cannot be loaded.
@@ -190,7 +192,7 @@ impl<'a> Finish<'a> {
         self.control.begin(Stage::Denoise, 0);
         output.nonfinite += output.color.remove_nonfinite();
         let quality = self.quality(output);
-        if self.view.window.pixel_count() > LARGE {
+        if self.is_last || self.view.window.pixel_count() > LARGE {
             give_back();
         }
         let clean = || denoiser.denoise(&output.color, &guides(layers), quality);

@@ -23,6 +23,8 @@ pub struct Goal {
     pub denoise_quality: Option<Quality>,
     /// True if the image before denoising is kept as layer `noisy`.
     pub keep_noisy: bool,
+    /// True if no later image of the session can use the virtual lights and photons. They are dropped before denoising.
+    pub is_last: bool,
     /// Settings of the verification of the image's error, if it is wanted.
     pub verify: Option<VerifySettings>,
 }

@@ -61,7 +61,8 @@ pub fn image(
     let mut made = match &goal.plan {
         PlanGoal::AsSet => {
             choice = chooser.map(|chooser| chooser.as_good_as(&goal.method));
-            as_set(context, choice.map_or(goal.method, |choice| choice.method), former)
+            let goal = Goal { method: choice.map_or(goal.method, |choice| choice.method), ..goal.clone() };
+            as_set(context, &goal, former)
         }
         PlanGoal::Time(time) => {
             if let Some(chooser) = chooser {
@@ -107,10 +108,10 @@ fn choose_for_time(
 }
 
 /// Renders and finishes the image by a method as it is set.
-fn as_set(context: &FrameContext, method: Method, former: Former) -> Made {
+fn as_set(context: &FrameContext, goal: &Goal, former: Former) -> Made {
     let FrameContext { world, lights, view, finish, control } = *context;
     let watch = Stopwatch::start();
-    let method = finish.guided(method);
+    let method = finish.guided(goal.method);
     let mut seconds = 0.0;
     let output = match former {
         Former::Frames(state) => next_frame(context, &method, state),
@@ -122,7 +123,13 @@ fn as_set(context: &FrameContext, method: Method, former: Former) -> Made {
             };
             finish.apply(&method, output)
         }
-        Former::Nothing => finish.apply(&method, method.render(world, lights, view, control)),
+        Former::Nothing => {
+            let output = method.render(world, lights, view, control);
+            if goal.is_last {
+                lights.forget();
+            }
+            finish.apply(&method, output)
+        }
     };
     seconds += watch.elapsed().wall_seconds;
     Made { method, output, seconds, measured: None, plan: Value::Null }

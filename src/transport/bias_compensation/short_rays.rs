@@ -135,7 +135,9 @@ fn weighed(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::lights::{Family, Intensities, LightTrees, Lights, Origin, Profiles, Vpl, VplKind, VplSet};
+    use crate::lights::{
+        Family, Intensities, IntensitySamples, LightTrees, Lights, Origin, Profiles, Vpl, VplKind, VplSet,
+    };
     use base::progress::Control;
     use std::f32::consts::PI;
     use world::World;
@@ -226,7 +228,8 @@ mod tests {
                 set.push(Vpl::oriented(Vec3::new(x, y, HEIGHT), Vec3::NEG_Z), Rgb::splat(of_ceiling));
                 set.push(Vpl::oriented(Vec3::new(x, y, 0.0), Vec3::Z), Rgb::splat(of_ceiling * around));
             }
-            let intensities = Intensities::new(&[set], &Profiles::default()).expect("there are lights");
+            let intensities = Intensities::new(&IntensitySamples::new(&[set], &Profiles::default()))
+                .expect("there are lights");
             let expected = ALBEDO * (1.0 - root).powi(2);
             let [reflected, _] = lacking(Limit::Irradiance(LIMIT), Some(&intensities), 0.0);
             assert!((reflected - expected).abs() < 0.02 * ALBEDO, "{around}: {reflected} for {expected}");

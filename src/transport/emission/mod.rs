@@ -23,6 +23,6 @@ mod tracing;
 
 pub use emitter::PhotonEmitter;
 pub use photon::{Photon, PhotonCounts, PhotonHit, PhotonSettings};
-pub use photons::trace_photons;
+pub use photons::{trace_in_parts, trace_photons};
 pub use sample::{EmissionNumbers, EmissionSample};
 pub use tracing::MAX_CORRECTION;

@@ -26,6 +26,19 @@ pub fn trace_photons<T: Send>(
     control: &Control,
     keep: impl Fn(&PhotonHit) -> T + Sync,
 ) -> (Vec<T>, PhotonCounts) {
+    let (parts, counts) = trace_in_parts(world, settings, control, keep);
+    let mut photons = Vec::with_capacity(parts.iter().map(Vec::len).sum());
+    parts.into_iter().for_each(|part| photons.extend(part));
+    (photons, counts)
+}
+
+/// Traces photons like [`trace_photons`], and returns the results as they were traced: in consecutive parts.
+pub fn trace_in_parts<T: Send>(
+    world: &World,
+    settings: &PhotonSettings,
+    control: &Control,
+    keep: impl Fn(&PhotonHit) -> T + Sync,
+) -> (Vec<Vec<T>>, PhotonCounts) {
     let max_edges = settings.max_edges.min(MAX_EDGES);
     let emitter = match PhotonEmitter::new(world) {
         Some(emitter) if settings.photons > 0 && max_edges > 0 && world.specular.store_light() => emitter,
@@ -37,10 +50,10 @@ pub fn trace_photons<T: Send>(
     let seed = hash(settings.seed, 0x1d1d);
     let tracer = PathTracer { emitter: &emitter, plan: &planned.plan, seed, max_edges };
     let max_chunks = (settings.photons.saturating_mul(PATHS_PER_PHOTON) / CHUNK).max(FIRST_WAVE);
-    let mut photons: Vec<T> = Vec::with_capacity(wanted + wanted / 8);
-    let mut chunks = 0;
-    while photons.len() < wanted && chunks < max_chunks && !control.is_cancelled() {
-        let wave = next_wave(chunks, photons.len(), wanted).min(max_chunks - chunks);
+    let mut parts = Vec::new();
+    let (mut found, mut chunks) = (0, 0);
+    while found < wanted && chunks < max_chunks && !control.is_cancelled() {
+        let wave = next_wave(chunks, found, wanted).min(max_chunks - chunks);
         let traced: Vec<PhotonChunk<T>> = (chunks..chunks + wave)
             .into_par_iter()
             .one_by_one()
@@ -56,15 +69,16 @@ pub fn trace_photons<T: Send>(
             }
             counts.rays += chunk.rays;
             // Chunks beyond the one that fills the quota are dropped, so that the result does not depend on the waves.
-            if photons.len() < wanted {
+            if found < wanted {
                 chunks += 1;
+                found += chunk.photons.len();
                 control.advance(chunk.photons.len() as u64);
-                photons.extend(chunk.photons);
+                parts.push(chunk.photons);
             }
         }
     }
     counts.paths = u64::from(chunks) * u64::from(CHUNK);
-    (photons, counts)
+    (parts, counts)
 }
 
 /// Returns the number of chunks to trace next: the estimate from the yield so far less 10 %, so that few are discarded.

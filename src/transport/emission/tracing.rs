@@ -49,6 +49,8 @@ impl PathTracer<'_, '_> {
             let sampler = &mut Sampler::new(self.seed, path);
             rays += self.path(sampler, &mut |hit| photons.push(keep(hit)));
         }
+        // Chunks wait for all others.
+        photons.shrink_to_fit();
         PhotonChunk { photons, rays }
     }
 

@@ -13,7 +13,7 @@
 
 use super::adaptive::MULTIPLES;
 use super::guides::Guide;
-use super::merge::{MergedPoint, merge};
+use super::merge::{MergedPoint, MergedPoints, merge};
 use super::needs::Needs;
 use super::points::VisibilitySample;
 use super::tracer::{BATCH, SampledTile, Tracer, TracerWorkspace};
@@ -105,7 +105,7 @@ impl<'w> Tracer<'_, 'w> {
             sums: vec![Rgb::ZERO; pixels.len()],
             samples: vec![spp; pixels.len()],
             guides: vec![Guide::default(); if self.finds_guides() { pixels.len() } else { 0 }],
-            points: Vec::with_capacity(2 * pixels.len()),
+            points: MergedPoints::default(),
             ranges: vec![0..0; pixels.len()],
             chains: EyeCounts::default(),
             nonfinite: 0,
@@ -128,7 +128,7 @@ impl<'w> Tracer<'_, 'w> {
                 let draw = self.draw(film_pixels[found.index], found.first);
                 merge(found.ends(), draw, merged);
                 let start = tile.points.len();
-                tile.points.extend_from_slice(merged);
+                merged.iter().for_each(|point| tile.points.push(point));
                 let range = &mut tile.ranges[i];
                 let start = if range.start < range.end { range.start } else { start };
                 *range = start..tile.points.len();
@@ -162,17 +162,18 @@ impl<'w> Tracer<'_, 'w> {
             let pixel = tile.pixels[i][1] * window.width + tile.pixels[i][0];
             for point in points {
                 found.points.geometry.push(point.geometry);
-                found.points.surfaces.push(point.surface);
+                found.points.surfaces.push(&point.surface);
                 found.visibility.push(VisibilitySample { pixel, weight: point.weight / samples as f32 });
             }
         };
-        let first_points = |i: usize| &tile.points[tile.ranges[i].clone()];
+        let first_points =
+            |i: usize| tile.ranges[i].clone().map(|point| tile.points.get(point)).collect::<Vec<_>>();
         for multiple in [0].into_iter().chain(MULTIPLES) {
             let chosen: Vec<usize> = (0..multiples.len()).filter(|i| multiples[*i] == multiple).collect();
             if multiple == 0 {
                 // Points that will not be lit are left out.
                 let lit = if cancelled { &[] } else { &chosen[..] };
-                lit.iter().for_each(|i| put(&mut found, *i, first_points(*i), tile.samples[*i]));
+                lit.iter().for_each(|i| put(&mut found, *i, &first_points(*i), tile.samples[*i]));
             } else {
                 let total = spp * (1 + multiple);
                 let chosen_pixels: Vec<[u32; 2]> = chosen.iter().map(|i| film_pixels[*i]).collect();
@@ -183,7 +184,7 @@ impl<'w> Tracer<'_, 'w> {
                         guide.add(more.guide);
                     }
                     found.nonfinite += more.nonfinite;
-                    let before = if more.first == spp { first_points(i) } else { &[] };
+                    let before = if more.first == spp { first_points(i) } else { Vec::new() };
                     let points = before.iter().chain(more.ends());
                     merge(points, self.draw(film_pixels[i], more.first), merged);
                     put(&mut found, i, merged, total);
@@ -199,6 +200,7 @@ impl<'w> Tracer<'_, 'w> {
         }
         let of_window = |[x, y]: [u32; 2]| y * window.width + x;
         let kept = tile.guides.iter().zip(&tile.samples).map(|(guide, samples)| guide.kept(*samples));
+        found.shrink_to_fit();
         found.guides = tile.pixels.iter().map(|pixel| of_window(*pixel)).zip(kept).collect();
         found
     }

@@ -10,6 +10,7 @@ use crate::paths::PathPolicy;
 use base::film::{Image, Layer, Window};
 use base::math::Rgb;
 use glam::Vec3;
+use rayon::prelude::*;
 use world::World;
 use world::view::View;
 
@@ -55,10 +56,10 @@ pub struct PackedGuides(pub Vec<PackedGuide>);
 impl PackedGuides {
     /// Returns layers of albedo and normals, named after these features.
     pub fn layers(&self, window: &Window) -> Vec<Layer> {
-        let image = |value: &dyn Fn(&PackedGuide) -> Vec3| Image {
+        let image = |value: &(dyn Fn(&PackedGuide) -> Vec3 + Sync)| Image {
             width: window.width,
             height: window.height,
-            pixels: self.0.iter().map(value).collect(),
+            pixels: self.0.par_iter().map(value).collect(),
         };
         let share = |codes: [u16; 3]| Vec3::from(codes.map(|code| f32::from(code) / MAX_CODE));
         let albedo = image(&|guide| share(guide.albedo));

@@ -7,7 +7,8 @@
 //! Deviations: chains through mirrors, glass and sharp lobes may lead to many points per pixel. These are thinned in
 //! proportion to the light they may carry, with weights that preserve the mean.
 
-use super::points::{PointGeometry, PointSurface, shading_point};
+use super::points::{PointGeometry, shading_point};
+use super::surfaces::{PointSurface, PointSurfaces};
 use crate::paths::{ChainEnd, MAX_DISTANCE, MAX_HEIGHT, MIN_OUT_COS};
 use base::math::{Rgb, luminance};
 
@@ -70,6 +71,44 @@ impl<'w> MergedPoint<'w> {
     fn carried(&self) -> f32 {
         let cos = self.surface.out.dot(self.geometry.normal);
         luminance(self.weight * self.surface.bsdf.albedo_at(cos))
+    }
+}
+
+/// Points that wait for others, in half the memory.
+#[derive(Default)]
+pub struct MergedPoints<'w> {
+    geometry: Vec<PointGeometry>,
+    surfaces: PointSurfaces<'w>,
+    /// Weight, class of path and depth.
+    paths: Vec<(Rgb, u32, u32)>,
+}
+
+impl<'w> MergedPoints<'w> {
+    /// Adds a point.
+    pub fn push(&mut self, point: &MergedPoint<'w>) {
+        let MergedPoint { geometry, surface, weight, path_class, depth } = point;
+        self.geometry.push(*geometry);
+        self.surfaces.push(surface);
+        self.paths.push((*weight, *path_class, *depth));
+    }
+
+    /// Returns a point.
+    pub fn get(&self, index: usize) -> MergedPoint<'w> {
+        let (weight, path_class, depth) = self.paths[index];
+        let (geometry, surface) = (self.geometry[index], self.surfaces.get(index));
+        MergedPoint { geometry, surface, weight, path_class, depth }
+    }
+
+    /// Returns the number of points.
+    pub fn len(&self) -> usize {
+        self.geometry.len()
+    }
+
+    /// Gives memory back that is not needed.
+    pub fn shrink_to_fit(&mut self) {
+        self.geometry.shrink_to_fit();
+        self.surfaces.shrink_to_fit();
+        self.paths.shrink_to_fit();
     }
 }
 

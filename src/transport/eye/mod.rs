@@ -24,6 +24,7 @@ mod rays;
 mod seen;
 mod settled;
 mod sharp;
+mod surfaces;
 #[cfg(test)]
 mod tests;
 mod tracer;
@@ -38,7 +39,8 @@ pub use features::{EvenSurface, Feature, Features, SeenPixels, UnknownFeature};
 pub use guides::{FirstSurfaces, FullPaths, Guide, PackedGuide, PackedGuides};
 pub use pass::EyePass;
 pub use pilot::{ByPhotons, EyePilot};
-pub use points::{PointGeometry, PointSurface, ShadingPoints, VisibilitySamples};
+pub use points::{PointGeometry, ShadingPoints, VisibilitySamples};
 pub use rays::{EyeRays, EyeSettings, TILE, VisibleSurfaces};
 pub use seen::FeatureSettings;
 pub use settled::Settled;
+pub use surfaces::{PointSurface, PointSurfaces};

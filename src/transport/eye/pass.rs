@@ -4,12 +4,13 @@
 //! Paper: Herzog et al. 2009, section 4. Eye samples are stored through specular chains and sorted by a kd-tree.
 
 use super::guides::{PackedGuide, PackedGuides};
-use super::points::{PointGeometry, PointSurface, VisibilitySample};
+use super::points::{PointGeometry, VisibilitySample};
 use super::rays::TILE;
+use super::surfaces::{PackedSurface, PointSurfaces};
 use super::{EyeCounts, EyeRays, EyeSettings, ShadingPoints, VisibilitySamples, VisibleSurfaces};
 use base::film::{Image, Window};
 use base::kd_tree::KdTree;
-use base::math::luminance;
+use base::math::{Rgb, luminance};
 use base::parallel::ShortRuns;
 use base::progress::Control;
 use base::stats::{Contributions, give_back};
@@ -110,18 +111,24 @@ impl<'w> EyePass<'w> {
         let mut chains = EyeCounts::default();
         let mut nonfinite = 0;
         let mut guides = Vec::new();
-        for tile in &mut tiles {
-            for (pixel, guide) in mem::take(&mut tile.guides) {
-                guides.resize(known.pixels.len(), PackedGuide::default());
-                guides[pixel as usize] = guide;
-            }
-            for (pixel, radiance) in mem::take(&mut tile.known) {
-                known.pixels[pixel as usize] += radiance / spp;
-            }
+        let seen: Vec<_> =
+            tiles.iter_mut().map(|tile| (mem::take(&mut tile.guides), mem::take(&mut tile.known))).collect();
+        for tile in &tiles {
             chains += tile.chains;
             nonfinite += tile.nonfinite;
         }
-        let arranged = Arranged::new(&mut tiles, control);
+        let put = || {
+            for (new_guides, light) in seen {
+                for (pixel, guide) in new_guides {
+                    guides.resize(known.pixels.len(), PackedGuide::default());
+                    guides[pixel as usize] = guide;
+                }
+                for (pixel, radiance) in light {
+                    known.pixels[pixel as usize] += radiance / spp;
+                }
+            }
+        };
+        let (arranged, ()) = rayon::join(|| Arranged::new(&mut tiles, control), put);
         let complete = all_traced && arranged.is_some();
         let Arranged { points, index, mut samples } = arranged.unwrap_or_else(Arranged::empty);
         samples.par_iter_mut().for_each(|sample| sample.weight /= spp);
@@ -147,7 +154,7 @@ impl<'w> EyePass<'w> {
     /// Returns the memory in bytes for rendering `window` with `points` shading points per pixel, all in memory at
     /// once: the film, the points, and twice as much and more for sorting and lighting them.
     pub fn expected_bytes(window: &Window, points: u64) -> u64 {
-        let point = size_of::<PointGeometry>() + size_of::<PointSurface>() + size_of::<u32>();
+        let point = size_of::<PointGeometry>() + size_of::<PackedSurface>() + size_of::<u32>();
         let each = 10 * (point + size_of::<VisibilitySample>()) / 3;
         let points = window.pixel_count().saturating_mul(points).saturating_mul(each as u64);
         Image::expected_bytes(window).saturating_add(points)
@@ -169,29 +176,50 @@ struct Arranged<'w> {
 impl<'w> Arranged<'w> {
     /// Moves points and samples out of the tiles; returns `None` if `control` is cancelled.
     fn new(tiles: &mut [VisibleSurfaces<'w>], control: &Control) -> Option<Arranged<'w>> {
-        // Arrays are processed in turn, so that only one at a time is in memory twice.
         let geometry = joined(tiles, |tile| mem::take(&mut tile.points.geometry), control)?;
-        let (index, order) =
-            KdTree::build_unless_cancelled(geometry.iter().map(|point| point.position), control);
+        let positions = || geometry.iter().map(|point| point.position);
+        let ((index, order), rest) = rayon::join(
+            || KdTree::build_unless_cancelled(positions(), control),
+            || {
+                let (surfaces, factors) = joined_surfaces(tiles, control)?;
+                Some((surfaces, factors, joined(tiles, |tile| mem::take(&mut tile.visibility), control)?))
+            },
+        );
+        let (surfaces, factors, samples) = rest?;
+        // Arrays are ordered in turn, so that only one at a time is in memory twice.
         let geometry = ordered(geometry, &order, control)?;
-        let surfaces = joined(tiles, |tile| mem::take(&mut tile.points.surfaces), control)?;
-        let surfaces = ordered(surfaces, &order, control)?;
-        let samples = joined(tiles, |tile| mem::take(&mut tile.visibility), control)?;
+        let surfaces = PointSurfaces::from_parts(ordered(surfaces, &order, control)?, factors);
         let samples = ordered(samples, &order, control)?;
         Some(Arranged { points: ShadingPoints { geometry, surfaces }, index, samples })
     }
 
     fn empty() -> Arranged<'w> {
-        let points = ShadingPoints { geometry: Vec::new(), surfaces: Vec::new() };
+        let points = ShadingPoints::default();
         Arranged { points, index: KdTree::empty(), samples: Vec::new() }
     }
+}
+
+/// Joins the surfaces of all tiles, and the factors of their lobes; returns `None` if `control` is cancelled.
+fn joined_surfaces<'w>(
+    tiles: &mut [VisibleSurfaces<'w>],
+    control: &Control,
+) -> Option<(Vec<PackedSurface<'w>>, Vec<Rgb>)> {
+    let mut all = Vec::new();
+    let take = |tile: &mut VisibleSurfaces<'w>| {
+        let (mut packed, factors) = mem::take(&mut tile.points.surfaces).into_parts();
+        packed.iter_mut().for_each(|surface| surface.move_behind(all.len()));
+        all.extend(factors);
+        packed
+    };
+    let surfaces = joined(tiles, take, control)?;
+    Some((surfaces, all))
 }
 
 /// Joins one part of all tiles into one array; returns `None` if `control` is cancelled. The tiles' parts are freed
 /// one by one, and memory is returned at intervals.
 fn joined<'w, T>(
     tiles: &mut [VisibleSurfaces<'w>],
-    part: impl Fn(&mut VisibleSurfaces<'w>) -> Vec<T>,
+    part: impl FnMut(&mut VisibleSurfaces<'w>) -> Vec<T>,
     control: &Control,
 ) -> Option<Vec<T>> {
     let mut parts: Vec<Vec<T>> = tiles.iter_mut().map(part).collect();

@@ -5,6 +5,7 @@
 //!
 //! Units: positions relative to the scene's centre; weights per pixel (they include 1/spp).
 
+use super::surfaces::{PointSurface, PointSurfaces};
 use base::math::Rgb;
 use glam::Vec3;
 use std::ops::Range;
@@ -23,17 +24,6 @@ pub struct PointGeometry {
     pub normal: Vec3,
     /// Coat that light has to pass to reach the base (see [`Bsdf::coat`]); 0 without a coat.
     pub coat: u32,
-}
-
-/// Surface of a shading point: the data that shading reads besides the geometry.
-#[derive(Clone, Copy, Debug)]
-pub struct PointSurface<'w> {
-    /// BSDF of the surface, without the lobes that the chain itself follows.
-    pub bsdf: Bsdf<'w>,
-    /// Unit geometric normal.
-    pub geometric_normal: Vec3,
-    /// Unit vector towards the eye, or towards the last mirror or glass before it.
-    pub out: Vec3,
 }
 
 /// Returns the shading point at a surface seen along `out`, or `None` if it cannot be lit. `spacing` is the distance
@@ -63,7 +53,7 @@ pub struct ShadingPoints<'w> {
     /// Geometry per point.
     pub geometry: Vec<PointGeometry>,
     /// Surface per point.
-    pub surfaces: Vec<PointSurface<'w>>,
+    pub surfaces: PointSurfaces<'w>,
 }
 
 impl ShadingPoints<'_> {

@@ -53,6 +53,13 @@ pub struct VisibleSurfaces<'w> {
 }
 
 impl VisibleSurfaces<'_> {
+    /// Gives memory of surfaces back that is not needed.
+    pub fn shrink_to_fit(&mut self) {
+        self.points.geometry.shrink_to_fit();
+        self.points.surfaces.shrink_to_fit();
+        self.visibility.shrink_to_fit();
+    }
+
     /// Clears surfaces and light, and keeps the memory.
     pub fn clear(&mut self) {
         self.points.geometry.clear();
@@ -86,7 +93,7 @@ impl<'a, 'w> EyeRays<'a, 'w> {
                     shading_point(&vertex.surface, vertex.bsdf, vertex.out, self.angle * vertex.distance)
             {
                 points.geometry.push(geometry);
-                points.surfaces.push(surface);
+                points.surfaces.push(&surface);
                 visibility.push(VisibilitySample { pixel, weight: vertex.throughput });
             }
         };

@@ -4,7 +4,7 @@ use super::caustic_lookups::CausticLookups;
 use super::direct_sampling::{DirectSampling, LightSources};
 use super::first_hits::FirstHits;
 use super::guides::{FirstSurfaces, Guide};
-use super::merge::MergedPoint;
+use super::merge::{MergedPoint, MergedPoints};
 use super::{EyeCounts, EyeSettings, FeatureSettings, guide};
 use crate::caustics::Caustics;
 use crate::paths::{Batch, Estimand, LightSamples, PathStart, RayCounts, ScatteredEdges, start};
@@ -78,7 +78,7 @@ pub(super) struct SampledTile<'w> {
     pub(super) samples: Vec<u32>,
     /// Denoiser guide per pixel, if guides are requested.
     pub(super) guides: Vec<Guide>,
-    pub(super) points: Vec<MergedPoint<'w>>,
+    pub(super) points: MergedPoints<'w>,
     /// Range of `points` per pixel.
     pub(super) ranges: Vec<Range<usize>>,
     pub(super) chains: EyeCounts,

@@ -7,10 +7,12 @@
 //! many further edges as the eye's path has.
 
 use super::{LightPassSettings, LobeProfile, Origin, Vpl, VplKind, VplSet};
-use crate::emission::{PhotonCounts, PhotonHit, PhotonSettings, trace_photons};
+use crate::emission::{PhotonCounts, PhotonHit, PhotonSettings, trace_in_parts};
 use base::math::Rgb;
+use base::parallel::ShortRuns;
 use base::progress::Control;
 use glam::Vec3;
+use rayon::prelude::*;
 use std::f32::consts::FRAC_1_PI;
 use world::shadow;
 use world::{SurfacePoint, World};
@@ -75,23 +77,46 @@ pub fn indirect_vpls(
     // One edge ends at the eye, another joins VPL and receiver.
     let max_edges = max_depth.saturating_sub(2);
     let wanted = PhotonSettings { photons: settings.indirect, seen, max_edges, seed: settings.seed };
-    let (found, photons) = trace_photons(world, &wanted, control, PhotonVpls::of);
+    let (found, photons) = trace_in_parts(world, &wanted, control, PhotonVpls::of);
+    let share = 1.0 / photons.paths.max(1) as f32;
+    let part = |found: Vec<PhotonVpls>| (!control.is_cancelled()).then(|| PartialVpls::of(found, share));
+    let parts: Vec<PartialVpls> = found.into_par_iter().one_by_one().map(part).while_some().collect();
     let mut diffuse = VplSet::new(VplKind::Oriented, Origin::Indirect);
     let mut lobed = VplSet::new(VplKind::Lobed, Origin::Indirect);
     let mut lobes = Vec::new();
-    let share = 1.0 / photons.paths.max(1) as f32;
-    diffuse.reserve(found.len());
-    for left in found {
-        if control.is_cancelled() {
-            break;
-        }
-        let place = left.place();
-        let (vpl, intensity) = left.diffuse;
-        diffuse.push(vpl, intensity * share);
-        for (profile, intensity) in left.lobes.into_iter().flatten() {
-            lobed.push(Vpl::lobed(place, lobes.len() as u32), intensity * share);
+    diffuse.reserve(parts.iter().map(|part| part.diffuse.len()).sum());
+    for part in parts {
+        diffuse.append(part.diffuse);
+        for (place, profile, intensity) in part.lobed {
+            lobed.push(Vpl::lobed(place, lobes.len() as u32), intensity);
             lobes.push(profile);
         }
     }
     IndirectVpls { sets: [diffuse, lobed], lobes, photons }
+}
+
+/// VPLs of some photons. Intensities are shares of all paths.
+struct PartialVpls {
+    diffuse: VplSet,
+    /// Positions, lobes and intensities.
+    lobed: Vec<(Vec3, LobeProfile, Rgb)>,
+}
+
+impl PartialVpls {
+    /// Converts the VPLs of photons, each of which carries a `share` of a path's light.
+    fn of(found: Vec<PhotonVpls>, share: f32) -> PartialVpls {
+        let mut diffuse = VplSet::new(VplKind::Oriented, Origin::Indirect);
+        let mut lobed = Vec::new();
+        diffuse.reserve(found.len());
+        for left in found {
+            if left.lobes.is_some() {
+                let place = left.place();
+                let of_photon = left.lobes.into_iter().flatten();
+                lobed.extend(of_photon.map(|(profile, intensity)| (place, profile, intensity * share)));
+            }
+            let (vpl, intensity) = left.diffuse;
+            diffuse.push(vpl, intensity * share);
+        }
+        PartialVpls { diffuse, lobed }
+    }
 }

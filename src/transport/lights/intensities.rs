@@ -26,10 +26,16 @@ pub struct Intensities {
     means: Vec<f32>,
 }
 
-impl Intensities {
-    /// Collects the intensities of indirect VPLs among `sets`; `None` if there are none. A VPL with a lobe counts as a
-    /// diffuse VPL of the same flux.
-    pub fn new(sets: &[VplSet], profiles: &Profiles) -> Option<Intensities> {
+/// Places and intensities of some indirect VPLs.
+pub struct IntensitySamples {
+    places: Vec<Vec3>,
+    intensities: Vec<f64>,
+}
+
+impl IntensitySamples {
+    /// Collects the intensities of indirect VPLs among `sets`. A VPL with a lobe counts as a diffuse VPL of the same
+    /// flux.
+    pub fn new(sets: &[VplSet], profiles: &Profiles) -> IntensitySamples {
         let indirect = || sets.iter().filter(|set| set.origin == Origin::Indirect);
         let stride = indirect().map(VplSet::len).sum::<usize>().div_ceil(MAX_SAMPLES).max(1);
         let (mut places, mut intensities) = (Vec::new(), Vec::new());
@@ -46,7 +52,15 @@ impl Intensities {
                 }
             }
         }
-        let (regions, members) = Regions::new(&places, MAX_IN_REGION);
+        IntensitySamples { places, intensities }
+    }
+}
+
+impl Intensities {
+    /// Returns the means of intensities; `None` if there are none.
+    pub fn new(samples: &IntensitySamples) -> Option<Intensities> {
+        let IntensitySamples { places, intensities } = samples;
+        let (regions, members) = Regions::new(places, MAX_IN_REGION);
         let mean = |members: &Vec<u32>| {
             let of_members = || members.iter().map(|i| intensities[*i as usize]);
             let middle = (of_members().map(f64::ln).sum::<f64>() / members.len() as f64).exp();
@@ -86,7 +100,8 @@ mod tests {
     #[test]
     fn intensities_are_those_of_the_lights_around() {
         for scale in [1e-25f32, 1.0, 1e25] {
-            let found = Intensities::new(&[set(scale)], &Profiles::default()).expect("there are lights");
+            let found = Intensities::new(&IntensitySamples::new(&[set(scale)], &Profiles::default()))
+                .expect("there are lights");
             for (x, expected) in [(-1.5, 8.0), (1.5, 0.02)] {
                 let around = found.around(Vec3::new(x, 0.5, 0.3)) / scale;
                 assert!((around / expected - 1.0).abs() < 1e-4, "{around} for {expected} at scale {scale}");
@@ -101,7 +116,8 @@ mod tests {
         for intensity in [1.0, 3.0] {
             set.push(Vpl::oriented(Vec3::ZERO, Vec3::Z), Rgb::splat(intensity));
         }
-        let found = Intensities::new(&[set], &Profiles::default()).expect("there are lights");
+        let found =
+            Intensities::new(&IntensitySamples::new(&[set], &Profiles::default())).expect("there are lights");
         assert!((found.around(Vec3::ZERO) - 2.5).abs() < 1e-6);
     }
 
@@ -111,7 +127,8 @@ mod tests {
         for i in 0..20 {
             set.push(Vpl::oriented(Vec3::ZERO, Vec3::Z), Rgb::splat(if i == 7 { 500.0 } else { 1.0 }));
         }
-        let found = Intensities::new(&[set], &Profiles::default()).expect("there are lights");
+        let found =
+            Intensities::new(&IntensitySamples::new(&[set], &Profiles::default())).expect("there are lights");
         assert!((found.around(Vec3::ZERO) - 1.0).abs() < 1e-6);
     }
 
@@ -119,6 +136,6 @@ mod tests {
     fn direct_lights_are_not_limited() {
         let mut direct = VplSet::new(VplKind::Oriented, Origin::Direct);
         direct.push(Vpl::oriented(Vec3::ZERO, Vec3::Z), Rgb::ONE);
-        assert!(Intensities::new(&[direct], &Profiles::default()).is_none());
+        assert!(Intensities::new(&IntensitySamples::new(&[direct], &Profiles::default())).is_none());
     }
 }

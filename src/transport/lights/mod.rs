@@ -20,7 +20,7 @@ mod tests;
 pub mod tree;
 mod vpl;
 
-pub use intensities::Intensities;
+pub use intensities::{Intensities, IntensitySamples};
 pub use origin::{DirectIndirect, Origin};
 pub use pass::{LightPass, light_pass};
 pub use profile::{LobeProfile, Profiles, SpotProfile};

@@ -1,10 +1,18 @@
 //! The virtual lights of a scene, as shading uses them: trees, intensities, and distances below which a VPL cannot
 //! represent its patch.
 
-use super::{Family, Intensities, LightPassSettings, LightTrees, light_pass, min_dist_sq, near_sq_of_size};
+use super::{
+    Family, Intensities, IntensitySamples, LightPassSettings, LightTrees, light_pass, min_dist_sq,
+    near_sq_of_size,
+};
 use base::progress::Control;
-use base::stats::{Stage, Stats};
+use base::stats::{Stage, Stats, give_back};
 use world::{SurfacePoint, World};
+
+/// Minimum number of VPLs before whose trees free memory is returned to the system.
+///
+/// Trees are the largest arrays of most images, and find no room among the parts of what was freed before.
+const MANY: usize = 1 << 17;
 
 /// Parameters of the virtual lights of a scene.
 #[derive(Clone, Debug, PartialEq)]
@@ -53,12 +61,17 @@ impl Lights {
         }
         stats.count("Rays/closest hit", rays);
 
+        if made.len() > MANY {
+            give_back();
+        }
         control.begin(Stage::Tree, 0);
         let diagonal = world.diagonal;
         let build = || {
-            let intensities = Intensities::new(&made.sets, &made.profiles);
-            let trees = LightTrees::build(&made.sets, made.profiles, diagonal, wanted.family, control);
-            (trees, intensities)
+            let samples = IntensitySamples::new(&made.sets, &made.profiles);
+            rayon::join(
+                || LightTrees::build(&made.sets, made.profiles, diagonal, wanted.family, control),
+                || Intensities::new(&samples),
+            )
         };
         let (trees, intensities) = stats.time(Stage::Tree, build);
         let min_dist_sq = min_dist_sq(diagonal);

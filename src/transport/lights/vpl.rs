@@ -157,6 +157,12 @@ impl VplSet {
         }
     }
 
+    /// Adds all VPLs of another set.
+    pub fn append(&mut self, mut other: VplSet) {
+        self.vpls.append(&mut other.vpls);
+        self.intensities.append(&mut other.intensities);
+    }
+
     /// Number of VPLs.
     pub fn len(&self) -> usize {
         self.vpls.len()

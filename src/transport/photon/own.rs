@@ -30,7 +30,7 @@ pub fn reflected(
 ) -> Rgb {
     let SampleGather { sample, lobe_only, rays, seed } = *task;
     let (point, surface) =
-        (&samples.points.geometry[sample as usize], &samples.points.surfaces[sample as usize]);
+        (&samples.points.geometry[sample as usize], samples.points.surfaces.get(sample as usize));
     let lobe = if lobe_only { surface.bsdf.split_base(1.0).1 } else { None };
     let bsdf: Bsdf = lobe.unwrap_or(surface.bsdf);
     let frame = Frame::from_normal(point.normal);

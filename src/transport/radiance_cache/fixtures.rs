@@ -4,7 +4,7 @@ use super::candidate::Candidate;
 use super::footprint::Footprint;
 use super::record::{Diagnostics, Record};
 use super::targets::Targets;
-use crate::eye::{PointGeometry, PointSurface, ShadingPoints};
+use crate::eye::{PointGeometry, PointSurface, PointSurfaces, ShadingPoints};
 use crate::lights::{DirectIndirect, Family, LightTrees, Origin, Profiles, Vpl, VplKind, VplSet};
 use base::kd_tree::KdTree;
 use base::math::{Rgb, luminance};
@@ -45,7 +45,9 @@ impl Floor {
             out: Vec3::Z,
         };
         let geometry = order.iter().map(|&i| point(positions[i as usize])).collect();
-        Floor { points: ShadingPoints { geometry, surfaces: vec![surface; positions.len()] }, index }
+        let mut surfaces = PointSurfaces::default();
+        positions.iter().for_each(|_| surfaces.push(&surface));
+        Floor { points: ShadingPoints { geometry, surfaces }, index }
     }
 
     /// Returns `n` by `n` points over the unit square.

@@ -24,7 +24,7 @@ impl Glossy {
     pub fn for_points(&self, points: &ShadingPoints, settings: &CacheSettings) -> Option<&Glossy> {
         let needed = settings.cached().any()
             && self.surfaces.any_series()
-            && points.surfaces.iter().any(|surface| surface.bsdf.split_base(1.0).1.is_some());
+            && points.surfaces.any(|surface| surface.bsdf.split_base(1.0).1.is_some());
         needed.then_some(self)
     }
 

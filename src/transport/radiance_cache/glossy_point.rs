@@ -42,7 +42,7 @@ impl<'a> GlossyPoint<'a> {
     pub fn new(targets: &'a Targets, sample: usize) -> Option<GlossyPoint<'a>> {
         let (base, lobe) = targets.split_for_series(sample)?;
         let surfaces = &targets.glossy?.surfaces;
-        let (point, surface) = (&targets.points.geometry[sample], &targets.points.surfaces[sample]);
+        let (point, surface) = (&targets.points.geometry[sample], targets.points.surfaces.get(sample));
         let cos = surface.out.dot(point.normal);
         let mirror = 2.0 * cos * point.normal - surface.out;
         let strength = surfaces.profile(&lobe, cos.max(MIN_COS)).strength();

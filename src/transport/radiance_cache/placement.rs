@@ -92,7 +92,7 @@ fn candidate(
     missing: DirectIndirect<bool>,
 ) -> Candidate {
     let point = &targets.points.geometry[sample];
-    let geometric_normal = targets.points.surfaces[sample].geometric_normal;
+    let geometric_normal = targets.points.surfaces.geometric_normal(sample);
     let cached = splats.as_ref().map(|splat| splat.sums[sample].mean().map_or(0.0, luminance));
     Candidate {
         sample: sample as u32,
@@ -236,7 +236,7 @@ mod tests {
         let reflected = 3.0;
         let targets = floor.targets().with_baseline(|i| if lit(i) { reflected } else { 0.0 });
         let splats = splats(&targets, &Records::default());
-        let albedo = luminance(floor.points.surfaces[0].bsdf.base_brdf() * std::f32::consts::PI);
+        let albedo = luminance(floor.points.surfaces.get(0).bsdf.base_brdf() * std::f32::consts::PI);
         let (mut bright, mut dark) = (0, 0);
         for parity in 0..2 {
             for found in candidates(

@@ -43,12 +43,16 @@ pub struct Interpolated {
 }
 
 impl CacheFrame<'_> {
-    /// Returns the light of the records at every eye sample, in order. It is computed in blocks, since the light of
-    /// all samples would dominate the memory of large images.
-    pub fn interpolate(&self, records: &Records) -> impl Iterator<Item = Interpolated> {
+    /// Maps the light of the records at every eye sample, in order. It is computed in blocks, since the light of all
+    /// samples would dominate the memory of large images.
+    pub fn interpolate<T: Send>(
+        &self,
+        records: &Records,
+        each: impl Fn(usize, Interpolated) -> T + Copy + Sync + Send,
+    ) -> impl Iterator<Item = T> {
         let index = self.targets.index;
-        let of_leaf = move |leaf| -> Vec<Interpolated> {
-            index.leaf(leaf).map(|sample| self.at_sample(records, leaf, sample)).collect()
+        let of_leaf = move |leaf| -> Vec<T> {
+            index.leaf(leaf).map(|sample| each(sample, self.at_sample(records, leaf, sample))).collect()
         };
         (0..index.leaves()).step_by(LEAVES).flat_map(move |first| {
             let leaves = first..(first + LEAVES).min(index.leaves());
@@ -58,7 +62,7 @@ impl CacheFrame<'_> {
 
     fn at_sample(&self, records: &Records, leaf: usize, sample: usize) -> Interpolated {
         let targets = &self.targets;
-        let (point, surface) = (&targets.points.geometry[sample], &targets.points.surfaces[sample]);
+        let (point, surface) = (&targets.points.geometry[sample], targets.points.surfaces.get(sample));
         let mut light = Interpolated {
             base: DirectIndirect::default(),
             lobe: Rgb::ZERO,
@@ -127,7 +131,7 @@ mod tests {
                 discontinuities: Vec::new(),
                 cuts: CutCounts::default(),
             };
-            let light: Vec<Interpolated> = frame.interpolate(&records).collect();
+            let light: Vec<Interpolated> = frame.interpolate(&records, |_, light| light).collect();
             assert_eq!(light.len(), floor.points.len());
             for (point, light) in floor.points.geometry.iter().zip(light) {
                 let distance = point.position.distance(Vec3::new(0.5, 0.5, 0.0));

@@ -1,7 +1,7 @@
 //! Shading points of one frame as targets of records.
 
 use super::glossy::Glossy;
-use crate::eye::{PointGeometry, ShadingPoints};
+use crate::eye::{PointGeometry, PointSurface, ShadingPoints};
 use base::kd_tree::KdTree;
 use base::math::{Rgb, luminance};
 use glam::Vec3;
@@ -39,14 +39,11 @@ pub struct Targets<'a> {
 impl<'a> Targets<'a> {
     /// Returns targets for all `points`. Series light a lobe if `glossy` has enough bands for it.
     pub fn new(points: &'a ShadingPoints, index: &'a KdTree, glossy: Option<&'a Glossy>) -> Targets<'a> {
-        let bands = |surface| glossy.map_or(0, |glossy: &Glossy| glossy.bands(surface));
-        let bands: Vec<u8> = points.surfaces.iter().map(bands).collect();
-        let cacheable = points
-            .surfaces
-            .iter()
-            .zip(&bands)
-            .map(|(surface, &bands)| bands > 0 || surface.bsdf.split_base(1.0).0 != Rgb::ZERO)
-            .collect();
+        let of_surface = |surface: &PointSurface| {
+            let bands = glossy.map_or(0, |glossy: &Glossy| glossy.bands(surface));
+            (bands, bands > 0 || surface.bsdf.split_base(1.0).0 != Rgb::ZERO)
+        };
+        let (bands, cacheable) = points.surfaces.map(of_surface).into_iter().unzip();
         Targets { points, index, glossy, bands, cacheable, baseline: Vec::new(), visible: Vec::new() }
     }
 
@@ -104,14 +101,14 @@ impl<'a> Targets<'a> {
     /// Splits the BSDF of a point into its base and its lobe, if series light the lobe; `None` otherwise.
     pub fn split_for_series(&self, point: usize) -> Option<(Rgb, Bsdf<'_>)> {
         self.glossy.filter(|_| self.bands[point] > 0)?;
-        let surface = &self.points.surfaces[point];
+        let surface = self.points.surfaces.get(point);
         let (base, lobe) = surface.bsdf.split_base(surface.out.dot(self.points.geometry[point].normal));
         Some((base, lobe?))
     }
 
     /// Returns the luminance of the irradiance of which a point reflects the luminance `radiance`.
     fn irradiance(&self, point: usize, radiance: f32) -> f32 {
-        let surface = &self.points.surfaces[point];
+        let surface = self.points.surfaces.get(point);
         let cos = surface.out.dot(self.points.geometry[point].normal);
         PI * radiance / luminance(surface.bsdf.albedo_at(cos))
     }

@@ -70,7 +70,7 @@ impl ShadingTask {
     /// Returns the receiver of the light.
     pub fn receiver<'w>(&self, points: &ShadingPoints<'w>) -> Receiver<'w> {
         let i = self.point as usize;
-        let (geometry, surface) = (&points.geometry[i], &points.surfaces[i]);
+        let (geometry, surface) = (&points.geometry[i], points.surfaces.get(i));
         let frame = Frame::from_normal(geometry.normal);
         let lobe = if self.lobe_only { surface.bsdf.split_base(1.0).1 } else { None };
         let bsdf = lobe.unwrap_or(surface.bsdf);

@@ -19,9 +19,9 @@ pub fn patches(
 ) -> Vec<Vec<ShadingTask>> {
     let max_size = (points.len() / count.max(1) as usize).max(MIN_PATCH);
     let place = |task: &ShadingTask| place(&points.geometry[task.point as usize]);
-    let bsdf = |task: &ShadingTask| &points.surfaces[task.point as usize].bsdf;
+    let bsdf = |task: &ShadingTask| points.surfaces.get(task.point as usize).bsdf;
     let same = |a: &ShadingTask, b: &ShadingTask| {
-        a.lobe_only == b.lobe_only && a.origin == b.origin && bsdf(a).same_lobes(bsdf(b))
+        a.lobe_only == b.lobe_only && a.origin == b.origin && bsdf(a).same_lobes(&bsdf(b))
     };
     let all = tasks.iter().copied();
     let patches = group_coherent(CoherenceLimit::close(diagonal), all, max_size, place, same);

@@ -8,6 +8,7 @@ mod brushed;
 mod energy;
 mod filtering;
 mod gaps;
+mod packed;
 mod prepared;
 mod rough_glass;
 mod sampling;

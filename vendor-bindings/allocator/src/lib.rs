@@ -4,11 +4,11 @@
 /// Number of mimalloc's option `purge_delay`, which its bindings do not name.
 const PURGE_DELAY: libmimalloc_sys::mi_option_t = 15;
 
-/// Lets the allocator keep free memory for some milliseconds. Memory that is used again meanwhile causes no page
-/// faults. Where another allocator is used, nothing happens.
+/// Lets the allocator keep free memory for some milliseconds, unless its environment variable sets another time. Memory
+/// that is used again meanwhile causes no page faults. Where another allocator is used, nothing happens.
 pub fn keep_for(milliseconds: u16) {
     // SAFETY: it takes no pointer, and the option exists in all versions since 2.1 of the library.
-    unsafe { libmimalloc_sys::mi_option_set(PURGE_DELAY, milliseconds.into()) }
+    unsafe { libmimalloc_sys::mi_option_set_default(PURGE_DELAY, milliseconds.into()) }
 }
 
 /// Gives all free memory back to the system at once, that which the calling thread's own small blocks leave aside too.

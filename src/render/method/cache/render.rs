@@ -153,9 +153,8 @@ impl Settings {
         tally.cuts("Records", &frame.cuts);
 
         let mut image = ShadedImage::new(&eye, self.inspect);
-        let tasks = tally.time(Stage::Splat, || {
-            resolve(frame.interpolate(records), &eye, cache.samples_direct_light(), &mut image)
-        });
+        let tasks = tally
+            .time(Stage::Splat, || resolve(&frame, records, &eye, cache.samples_direct_light(), &mut image));
         image.came_by("records");
         control.begin(Stage::Render, tasks.len() as u64);
         // Noise that the previous frame did not have would flicker.
