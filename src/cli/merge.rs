@@ -8,7 +8,7 @@ use super::outputs::{Inputs, OutputCheck, check_outputs};
 use super::talk;
 use anyhow::anyhow;
 use base::film::metrics::{rel_mse_of_variance, standard_error};
-use base::film::{ExrFile, Metadata, SAMPLES, Weight, write_png};
+use base::film::{ExrFile, Image, Metadata, SAMPLES, Weight, write_png};
 use render::denoise::{NOISY, NOISY_VARIANCE};
 use render::method::path::PartialImage;
 use serde_json::Value;
@@ -29,29 +29,7 @@ pub fn run(args: MergeArgs) -> Result<(), Failure> {
         files.push((path.as_path(), noisy(path)?));
     }
     let facts: Vec<Metadata> = files.iter().map(|(_, file)| file.metadata()).collect();
-    let mut seeds: Vec<String> = Vec::new();
-    let mut weights = Vec::new();
-    for ((path, file), own) in files.iter().zip(&facts) {
-        let refuse = |reason: String| Err(Failure::input(anyhow!("{}: {reason}", path.display())));
-        let Some(spp) = own.number("spp").filter(|spp| *spp > 0.0) else {
-            return refuse(
-                "the file does not state its number of samples; merge only images of lightsplat".to_owned(),
-            );
-        };
-        let first = args.inputs[0].display();
-        if let Some(difference) = difference((&files[0].1, &facts[0]), (file, own)) {
-            return refuse(format!("its {difference} differs from {first}"));
-        }
-        for seed in own_seeds(own) {
-            if seeds.contains(&seed) {
-                return refuse(format!(
-                    "another image also has seed {seed}; render one of the two with another --seed"
-                ));
-            }
-            seeds.push(seed);
-        }
-        weights.push(file.numbers(SAMPLES).map_or(Weight::Whole(spp), |own| Weight::ByPixel(own.pixels)));
-    }
+    let Summands { seeds, weights } = Summands::check(&files, &facts)?;
     let mut files = files.into_iter().map(|(_, mut file)| {
         file.remove_layer(SAMPLES);
         file
@@ -59,13 +37,7 @@ pub fn run(args: MergeArgs) -> Result<(), Failure> {
     let Some(mut merged) = files.next() else { return Ok(()) };
     merged.merge(&files.collect::<Vec<_>>(), &weights, &[VARIANCE]).map_err(Failure::input)?;
     let color = merged.color().map_err(Failure::input)?;
-    if let Ok(variance) = merged.layer(VARIANCE) {
-        merged.set("standard_error", standard_error(&variance));
-        merged.set("relative_mse_of_noise", rel_mse_of_variance(&variance, &color));
-    }
-    OWN.iter().for_each(|fact| merged.remove_fact(fact));
-    let own: Vec<String> = facts[0].iter().map(|(key, _)| key.to_owned()).collect();
-    own.iter().filter(|key| key.starts_with("verified_")).for_each(|key| merged.remove_fact(key));
+    renew_facts(&mut merged, &color);
     merged.set("seed", seeds.join(","));
     count_samples(&mut merged, &weights, color.pixels.len());
     let mut said = format!("wrote {}, merged from {} images", args.output.display(), weights.len());
@@ -83,6 +55,56 @@ pub fn run(args: MergeArgs) -> Result<(), Failure> {
     }
     talk::wrote(&said, &written);
     Ok(())
+}
+
+/// Seeds and weights of the images that are merged.
+#[derive(Default)]
+struct Summands {
+    /// Seeds of all images.
+    seeds: Vec<String>,
+    /// Weight of each image.
+    weights: Vec<Weight>,
+}
+
+impl Summands {
+    /// Checks that the images show one view by one method, with different seeds. `facts` has the metadata of each.
+    fn check(files: &[(&Path, ExrFile)], facts: &[Metadata]) -> Result<Summands, Failure> {
+        let mut all = Summands::default();
+        for ((path, file), own) in files.iter().zip(facts) {
+            let refuse = |reason: String| Err(Failure::input(anyhow!("{}: {reason}", path.display())));
+            let Some(spp) = own.number("spp").filter(|spp| *spp > 0.0) else {
+                return refuse(
+                    "the file does not state its number of samples; merge only images of lightsplat"
+                        .to_owned(),
+                );
+            };
+            if let Some(difference) = difference((&files[0].1, &facts[0]), (file, own)) {
+                return refuse(format!("its {difference} differs from {}", files[0].0.display()));
+            }
+            for seed in own_seeds(own) {
+                if all.seeds.contains(&seed) {
+                    return refuse(format!(
+                        "another image also has seed {seed}; render one of the two with another --seed"
+                    ));
+                }
+                all.seeds.push(seed);
+            }
+            let by_pixel = file.numbers(SAMPLES).map(|own| Weight::ByPixel(own.pixels));
+            all.weights.push(by_pixel.unwrap_or(Weight::Whole(spp)));
+        }
+        Ok(all)
+    }
+}
+
+/// Computes the error of a merged image from its variance, and removes facts that do not apply to it.
+fn renew_facts(merged: &mut ExrFile, color: &Image) {
+    if let Ok(variance) = merged.layer(VARIANCE) {
+        merged.set("standard_error", standard_error(&variance));
+        merged.set("relative_mse_of_noise", rel_mse_of_variance(&variance, color));
+    }
+    OWN.iter().for_each(|fact| merged.remove_fact(fact));
+    let all: Vec<String> = merged.metadata().iter().map(|(key, _)| key.to_owned()).collect();
+    all.iter().filter(|key| key.starts_with("verified_")).for_each(|key| merged.remove_fact(key));
 }
 
 /// Reads an image; returns it without denoising.

@@ -13,9 +13,10 @@ use super::{dry_run, interrupt, opened, picture, talk, threads};
 use anyhow::{Context, anyhow};
 use base::film::SAMPLES;
 use base::progress::Control;
-use base::stats::{Stage, Stopwatch, peak_resident_bytes};
+use base::stats::{Stage, Stats, Stopwatch, peak_resident_bytes};
 use render::method::path::PartialImage;
 use render::session::{BLACK, FrameError, Opened, Remark, RenderedFrame};
+use serde_json::Value;
 use std::fs;
 use std::sync::Arc;
 use world::view::View;
@@ -48,24 +49,11 @@ pub fn still(job: &RenderJob, opened: &Opened, span: RunSpan, control: &Control)
         talk::note(&format!("{} already exists and is unchanged", exr.display()));
         return Ok(());
     }
-    let inputs = Inputs::of(&opened.session);
-    inputs.check_apart(job.files.paths().chain(job.previews.file()))?;
-    outputs::check_unprotected(job.files.paths())?;
-    if let Some(png) = png.filter(|_| job.goal.method.inspects()) {
-        inputs.check_layers(png)?;
-    }
+    check_files(job, opened)?;
     if job.dry_run {
         return dry_run::still(job, &opened.session);
     }
-    let begun = job.files.exr.as_ref().filter(|_| job.resume);
-    let begun = begun.and_then(|exr| {
-        let parts = [exr.clone(), picture::beside(exr)];
-        parts.into_iter().find_map(|part| Some((job_key::begun(&part, job.frame, &key)?, part)))
-    });
-    let begun = begun.map(|(begun, part)| {
-        talk::note(&format!("continuing with the samples of {}", part.display()));
-        begun
-    });
+    let begun = samples_so_far(job, &key);
     let progress = Watch::new(job.progress, RunProgress::new(1, Stages::of(&job.goal), span));
     let mut showing = job.previews.begin(&job.files.names().swap_remove(0));
     let work = Work { begun, progress, showing: &mut showing };
@@ -79,7 +67,7 @@ pub fn still(job: &RenderJob, opened: &Opened, span: RunSpan, control: &Control)
     }
     let is_black = frame.is_black();
     let can_go_on = files.exr.is_some() && frame.film.layers.iter().any(|layer| layer.name == SAMPLES);
-    let RenderedFrame { film, mut stats, mut facts, remarks, measured, complete, unverified, .. } = frame;
+    let RenderedFrame { film, mut stats, facts, remarks, measured, complete, unverified, .. } = frame;
     say(&remarks);
     showing.rendered(&film.color);
     showing.last(&film.color);
@@ -91,6 +79,45 @@ pub fn still(job: &RenderJob, opened: &Opened, span: RunSpan, control: &Control)
         remove_parts(job, &key);
     }
     stats.add_time(Stage::Total, job.run.elapsed());
+    report(job, stats, facts)?;
+    let output = files.main().display();
+    match (complete, unverified) {
+        (true, _) if job.reading.strict && is_black => Err(Failure::render(anyhow!("{output}: {BLACK}"))),
+        (true, false) => Ok(()),
+        (true, true) => Err(Failure::interrupted(anyhow!(
+            "interrupted; {output} is complete, but its error is not measured"
+        ))),
+        (false, _) => {
+            let further = if can_go_on { "; run the same command with --resume to continue" } else { "" };
+            Err(Failure::interrupted(anyhow!("interrupted; {output} is partial{further}")))
+        }
+    }
+}
+
+/// Checks that the files of a job can be written, and are no inputs of the scene.
+fn check_files(job: &RenderJob, opened: &Opened) -> Result<(), Failure> {
+    let inputs = Inputs::of(&opened.session);
+    inputs.check_apart(job.files.paths().chain(job.previews.file()))?;
+    outputs::check_unprotected(job.files.paths())?;
+    let png = job.files.png.as_ref().map(|(path, _)| path.as_path());
+    if let Some(png) = png.filter(|_| job.goal.method.inspects()) {
+        inputs.check_layers(png)?;
+    }
+    Ok(())
+}
+
+/// Returns the samples of an interrupted run with this `key`, if the job continues one.
+fn samples_so_far(job: &RenderJob, key: &str) -> Option<PartialImage> {
+    let exr = job.files.exr.as_ref().filter(|_| job.resume)?;
+    let parts = [exr.clone(), picture::beside(exr)];
+    let (begun, part) =
+        parts.into_iter().find_map(|part| Some((job_key::begun(&part, job.frame, key)?, part)))?;
+    talk::note(&format!("continuing with the samples of {}", part.display()));
+    Some(begun)
+}
+
+/// Prints the statistics and facts of an image, if the job asks for them.
+fn report(job: &RenderJob, mut stats: Stats, mut facts: Value) -> Result<(), Failure> {
     if facts["plan"]["asked_seconds"].is_number() {
         let seconds = |stage| stats.stage(stage).map_or(0.0, |t| t.wall_seconds);
         let got = seconds(Stage::Total) - seconds(Stage::Verify);
@@ -109,18 +136,7 @@ pub fn still(job: &RenderJob, opened: &Opened, span: RunSpan, control: &Control)
         }
         None => {}
     }
-    let output = files.main().display();
-    match (complete, unverified) {
-        (true, _) if job.reading.strict && is_black => Err(Failure::render(anyhow!("{output}: {BLACK}"))),
-        (true, false) => Ok(()),
-        (true, true) => Err(Failure::interrupted(anyhow!(
-            "interrupted; {output} is complete, but its error is not measured"
-        ))),
-        (false, _) => {
-            let further = if can_go_on { "; run the same command with --resume to continue" } else { "" };
-            Err(Failure::interrupted(anyhow!("interrupted; {output} is partial{further}")))
-        }
-    }
+    Ok(())
 }
 
 /// Prints the remarks of a frame.

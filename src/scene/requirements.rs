@@ -257,14 +257,11 @@ fn list(texts: impl Iterator<Item = String>) -> String {
     if texts.is_empty() { "none".into() } else { texts.join(", ") }
 }
 
-impl fmt::Display for Requirements {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        let listed = |pairs: &[(usize, &str)]| {
-            list(pairs.iter().filter(|p| p.0 > 0).map(|(n, what)| format!("{n} {what}")))
-        };
-        let named = |pairs: &[(bool, &str)]| list(pairs.iter().filter(|p| p.0).map(|p| p.1.to_owned()));
-        let (m, t) = (&self.materials, &self.trees);
-        let materials = listed(&[
+impl Requirements {
+    /// Returns the kinds of materials with their numbers, as a text.
+    fn material_list(&self) -> String {
+        let m = &self.materials;
+        let kinds = [
             (m.diffuse, "diffuse"),
             (m.glossy, "glossy"),
             (m.plastic, "plastic"),
@@ -272,17 +269,29 @@ impl fmt::Display for Requirements {
             (m.mirror, "mirror"),
             (m.glass, "glass"),
             (m.principled, "principled"),
-        ]);
-        let trees = named(&[
+        ];
+        list(kinds.iter().filter(|kind| kind.0 > 0).map(|(n, what)| format!("{n} {what}")))
+    }
+
+    /// Returns the light trees that the scene needs, as a text.
+    fn tree_list(&self) -> String {
+        let t = &self.trees;
+        let trees = [
             (t.omni, "omni"),
             (t.oriented, "oriented"),
             (t.directional, "directional"),
             (t.environment, "environment"),
             (t.indirect, "indirect"),
-        ]);
+        ];
+        list(trees.iter().filter(|tree| tree.0).map(|tree| tree.1.to_owned()))
+    }
+}
+
+impl fmt::Display for Requirements {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         let alpha = self.smallest_alpha.map_or(String::new(), |a| format!(", smallest alpha {a}"));
         let yes = |b: bool| if b { "yes" } else { "no" };
-        writeln!(f, "materials        {materials}")?;
+        writeln!(f, "materials        {}", self.material_list())?;
         writeln!(
             f,
             "glossy           {} ({:.1} % of the area{alpha})",
@@ -296,7 +305,7 @@ impl fmt::Display for Requirements {
             100.0 * self.specular_area_share
         )?;
         writeln!(f, "two-sided        {}", yes(self.two_sided))?;
-        writeln!(f, "light trees      {trees}")?;
+        writeln!(f, "light trees      {}", self.tree_list())?;
         writeln!(f, "lights           {} ({} emitting triangles)", self.lights, self.emitting_triangles)?;
         writeln!(f, "textures         {}", self.textures)?;
         if self.attributes > 0 {

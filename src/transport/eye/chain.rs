@@ -16,7 +16,7 @@ use base::math::{Cone, Rgb};
 use base::sampling::Sampler;
 use embree::Ray;
 use glam::Vec3;
-use world::material::Bsdf;
+use world::material::{Bsdf, BsdfSample};
 use world::shadow;
 use world::{Interior, Surface, World};
 
@@ -87,6 +87,101 @@ struct ChainBranch {
     interior: Interior,
 }
 
+impl ChainBranch {
+    /// Returns the radiance of the environment that a ray sees which hits nothing, by MIS weight; `None` if there is
+    /// none.
+    fn radiance_of_environment(&self, world: &World) -> Option<Rgb> {
+        let is_hidden = self.edges == 1 && world.scene.hides_emitters;
+        let environment = world.emitters.environment.as_ref().filter(|_| !is_hidden)?;
+        let direction = self.ray.direction;
+        Some(match self.start {
+            Some(start) => {
+                let (radiance, pdf) = environment.radiance_pdf(direction);
+                radiance * start.weight_of_environment(world, pdf)
+            }
+            None => environment.radiance(direction),
+        })
+    }
+
+    /// Returns the light at the eye that the surface hit emits, by MIS weight. The share `passed` of it reaches the
+    /// beginning of the edge.
+    fn light_of(&self, world: &World, surface: &Surface, passed: Rgb) -> Rgb {
+        let light = world.emitted(surface, -self.ray.direction);
+        if light == Rgb::ZERO {
+            return light;
+        }
+        let weight = |start: LobeSample| start.weight_of_area(world, surface, self.ray.direction);
+        self.throughput * passed * light * self.start.map_or(1.0, weight)
+    }
+
+    /// Returns the throughput of a branch continued by `lobe`; `None` if Russian roulette ends it.
+    fn surviving(&self, lobe: &BsdfSample, sampler: &mut Sampler) -> Option<Rgb> {
+        let throughput = self.throughput * lobe.weight;
+        let carried = throughput.max_element() * (self.eta_sq * lobe.eta * lobe.eta);
+        let limit = if self.edges >= MANY_EDGES { MAX_SURVIVAL } else { 1.0 };
+        let survival = (carried / ROULETTE_THROUGHPUT).min(limit);
+        if survival < 1.0 {
+            return (sampler.next_1d() < survival).then_some(throughput / survival);
+        }
+        Some(throughput)
+    }
+
+    /// Returns the branch continued by `lobe` from the surface that it has hit. Throughput and start stay as they are.
+    fn along(&self, world: &World, at: &ChainVertex, lobe: &BsdfSample) -> ChainBranch {
+        let surface = &at.surface;
+        let direction = surface.frame.to_world(lobe.wi);
+        ChainBranch {
+            ray: shadow::ray_from(surface.position, surface.normal, direction),
+            throughput: self.throughput,
+            eta_sq: self.eta_sq * lobe.eta * lobe.eta,
+            depth: self.depth + u32::from(!lobe.straight),
+            edges: self.edges + 1,
+            distance: at.distance,
+            start: self.start,
+            interior: world.interior_after(self.interior, surface, direction, lobe.straight),
+        }
+    }
+}
+
+/// Branches of a chain that are still to be followed, the first of each surface before all others.
+struct ChainBranches {
+    current: Option<ChainBranch>,
+    pending: [Option<ChainBranch>; PENDING],
+    /// Number of pending branches.
+    waiting: usize,
+}
+
+impl ChainBranches {
+    /// Begins a chain with an eye ray.
+    fn new(ray: Ray) -> ChainBranches {
+        let (throughput, eta_sq, depth, edges, distance) = (Rgb::ONE, 1.0, 1, 1, 0.0);
+        let (start, interior) = (None, Interior::NONE);
+        let first = ChainBranch { ray, throughput, eta_sq, depth, edges, distance, start, interior };
+        ChainBranches { current: Some(first), pending: [const { None }; PENDING], waiting: 0 }
+    }
+
+    /// Removes the next branch.
+    fn next(&mut self) -> Option<ChainBranch> {
+        self.current.take().or_else(|| {
+            self.waiting = self.waiting.checked_sub(1)?;
+            self.pending[self.waiting].take()
+        })
+    }
+
+    /// Adds a branch; returns false if there is no room for it.
+    fn push(&mut self, branch: ChainBranch) -> bool {
+        if self.current.is_none() {
+            self.current = Some(branch);
+        } else if self.waiting < PENDING {
+            self.pending[self.waiting] = Some(branch);
+            self.waiting += 1;
+        } else {
+            return false;
+        }
+        true
+    }
+}
+
 /// Tracer of the chains of eye rays.
 #[derive(Clone, Copy)]
 pub struct ChainTracer<'w> {
@@ -111,32 +206,14 @@ impl<'w> ChainTracer<'w> {
         counts: &mut EyeCounts,
         mut visit: impl FnMut(EdgeEnd<'w>),
     ) -> Rgb {
-        let ChainTracer { world, cone, max_depth, follow } = *self;
-        let mut emitted = Rgb::ZERO;
-        let mut pending: [Option<ChainBranch>; PENDING] = [const { None }; PENDING];
-        let mut waiting = 0;
-        let (throughput, eta_sq, depth, edges, distance) = (Rgb::ONE, 1.0, 1, 1, 0.0);
-        let (start, interior) = (None, Interior::NONE);
-        let mut current =
-            Some(ChainBranch { ray, throughput, eta_sq, depth, edges, distance, start, interior });
-        while let Some(mut branch) = current.take().or_else(|| {
-            waiting = usize::checked_sub(waiting, 1)?;
-            pending[waiting].take()
-        }) {
+        let ChainTracer { world, cone, .. } = *self;
+        let (mut emitted, mut branches) = (Rgb::ZERO, ChainBranches::new(ray));
+        while let Some(mut branch) = branches.next() {
             counts.rays += 1;
             let out = -branch.ray.direction;
             let Some(mut surface) = world.intersect(&branch.ray) else {
                 visit(EdgeEnd::Nothing { throughput: branch.throughput });
-                let is_hidden = branch.edges == 1 && world.scene.hides_emitters;
-                if let Some(environment) = world.emitters.environment.as_ref().filter(|_| !is_hidden) {
-                    let direction = branch.ray.direction;
-                    let radiance = match branch.start {
-                        Some(start) => {
-                            let (radiance, pdf) = environment.radiance_pdf(direction);
-                            radiance * start.weight_of_environment(world, pdf)
-                        }
-                        None => environment.radiance(direction),
-                    };
+                if let Some(radiance) = branch.radiance_of_environment(world) {
                     emitted += branch.throughput * radiance;
                 }
                 continue;
@@ -147,20 +224,17 @@ impl<'w> ChainTracer<'w> {
                 true => world.edge_shares(branch.interior, &surface, branch.ray.direction, branch.ray.t_near),
                 false => [Rgb::ONE; 2],
             };
-            let light = world.emitted(&surface, out);
-            if light != Rgb::ZERO {
-                let weight = |start: LobeSample| start.weight_of_area(world, &surface, branch.ray.direction);
-                emitted += branch.throughput * of_emission * light * branch.start.map_or(1.0, weight);
-            }
+            emitted += branch.light_of(world, &surface, of_emission);
             branch.throughput *= of_rest;
             let whole = world.bsdf(&surface);
             let (bsdf, sharp) = match whole.split_sharp_lobes() {
-                Some((bsdf, sharp)) if follow == Follow::DeltaAndSharp => (bsdf, Some(sharp)),
+                Some((bsdf, sharp)) if self.follow == Follow::DeltaAndSharp => (bsdf, Some(sharp)),
                 _ => (whole, None),
             };
             let ChainBranch { throughput, depth, .. } = branch;
-            visit(EdgeEnd::Surface(ChainVertex { surface, bsdf, out, throughput, depth, distance }));
-            if branch.depth >= max_depth || !(bsdf.has_delta() || sharp.is_some()) {
+            let vertex = ChainVertex { surface, bsdf, out, throughput, depth, distance };
+            visit(EdgeEnd::Surface(vertex));
+            if branch.depth >= self.max_depth || !(bsdf.has_delta() || sharp.is_some()) {
                 continue;
             }
             let wo = surface.frame.to_local(out);
@@ -171,19 +245,7 @@ impl<'w> ChainTracer<'w> {
                 sharp.sample(wo, sampler.next_1d(), sampler.next_2d())
             });
             for lobe in [lobes.refraction, lobes.reflection, sampled].into_iter().flatten() {
-                let mut throughput = branch.throughput * lobe.weight;
-                let eta_sq = branch.eta_sq * lobe.eta * lobe.eta;
-                let carried = throughput.max_element() * eta_sq;
-                let limit = if branch.edges >= MANY_EDGES { MAX_SURVIVAL } else { 1.0 };
-                let survival = (carried / ROULETTE_THROUGHPUT).min(limit);
-                if survival < 1.0 {
-                    if sampler.next_1d() >= survival {
-                        continue;
-                    }
-                    throughput /= survival;
-                }
-                let direction = surface.frame.to_world(lobe.wi);
-                let ray = shadow::ray_from(surface.position, surface.normal, direction);
+                let Some(throughput) = branch.surviving(&lobe, sampler) else { continue };
                 // Shadow rays pass sheets too, so an edge through a sheet keeps its start.
                 let start = match lobe.straight {
                     true => branch.start,
@@ -191,18 +253,8 @@ impl<'w> ChainTracer<'w> {
                         sharp.filter(|_| !lobe.delta).map(|by| LobeSample::new(&surface, &by, wo, lobe.pdf))
                     }
                 };
-                let depth = branch.depth + u32::from(!lobe.straight);
-                let edges = branch.edges + 1;
-                let interior = world.interior_after(branch.interior, &surface, direction, lobe.straight);
-                let next = ChainBranch { ray, throughput, eta_sq, depth, edges, distance, start, interior };
-                if current.is_none() {
-                    current = Some(next);
-                } else if waiting < PENDING {
-                    pending[waiting] = Some(next);
-                    waiting += 1;
-                } else {
-                    counts.overflow += 1;
-                }
+                let next = branch.along(world, &vertex, &lobe);
+                counts.overflow += u64::from(!branches.push(ChainBranch { throughput, start, ..next }));
             }
         }
         emitted

@@ -92,6 +92,17 @@ pub fn merged_points(spp: u32) -> u64 {
     u64::from(spp).min(POINTS_PER_BATCH * u64::from(spp.div_ceil(BATCH)))
 }
 
+impl<'w> VisibleSurfaces<'w> {
+    /// Adds the shading points that `samples` samples of a pixel have found.
+    fn add(&mut self, pixel: u32, points: &[MergedPoint<'w>], samples: u32) {
+        for point in points {
+            self.points.geometry.push(point.geometry);
+            self.points.surfaces.push(&point.surface);
+            self.visibility.push(VisibilitySample { pixel, weight: point.weight / samples as f32 });
+        }
+    }
+}
+
 impl<'w> Tracer<'_, 'w> {
     /// Takes the first samples of all pixels of a tile.
     fn first_samples(&self, index: usize, work: &mut TracerWorkspace<'_, 'w>) -> SampledTile<'w> {
@@ -152,20 +163,8 @@ impl<'w> Tracer<'_, 'w> {
             VisibleSurfaces { chains: tile.chains, nonfinite: tile.nonfinite, ..Default::default() };
         let film_pixels: Vec<[u32; 2]> = tile.pixels.iter().map(|pixel| window.film_pixel(*pixel)).collect();
         let cancelled = self.control.is_cancelled();
-        let needs = needs.filter(|_| !cancelled);
-        let more = |(pixel, samples): (&[u32; 2], &u32)| match needs {
-            Some(needs) if *samples == spp => needs.choice.more(&needs.luminances, *pixel),
-            _ => 0,
-        };
-        let multiples: Vec<u32> = film_pixels.iter().zip(&tile.samples).map(more).collect();
-        let put = |found: &mut VisibleSurfaces<'w>, i: usize, points: &[MergedPoint<'w>], samples: u32| {
-            let pixel = tile.pixels[i][1] * window.width + tile.pixels[i][0];
-            for point in points {
-                found.points.geometry.push(point.geometry);
-                found.points.surfaces.push(&point.surface);
-                found.visibility.push(VisibilitySample { pixel, weight: point.weight / samples as f32 });
-            }
-        };
+        let multiples = self.multiples(&film_pixels, &tile.samples, needs.filter(|_| !cancelled));
+        let of_window = |[x, y]: [u32; 2]| y * window.width + x;
         let first_points =
             |i: usize| tile.ranges[i].clone().map(|point| tile.points.get(point)).collect::<Vec<_>>();
         for multiple in [0].into_iter().chain(MULTIPLES) {
@@ -173,7 +172,10 @@ impl<'w> Tracer<'_, 'w> {
             if multiple == 0 {
                 // Points that will not be lit are left out.
                 let lit = if cancelled { &[] } else { &chosen[..] };
-                lit.iter().for_each(|i| put(&mut found, *i, &first_points(*i), tile.samples[*i]));
+                lit.iter().for_each(|i| {
+                    let pixel = of_window(tile.pixels[*i]);
+                    found.add(pixel, &first_points(*i), tile.samples[*i])
+                });
             } else {
                 let total = spp * (1 + multiple);
                 let chosen_pixels: Vec<[u32; 2]> = chosen.iter().map(|i| film_pixels[*i]).collect();
@@ -187,22 +189,30 @@ impl<'w> Tracer<'_, 'w> {
                     let before = if more.first == spp { first_points(i) } else { Vec::new() };
                     let points = before.iter().chain(more.ends());
                     merge(points, self.draw(film_pixels[i], more.first), merged);
-                    put(&mut found, i, merged, total);
+                    found.add(of_window(tile.pixels[i]), merged, total);
                     tile.samples[i] = total;
                 });
                 found.chains += chains;
                 found.chains.extra_samples += u64::from(total - spp) * chosen.len() as u64;
             }
             for i in chosen.into_iter().filter(|i| tile.sums[*i] != Rgb::ZERO) {
-                let pixel = tile.pixels[i][1] * window.width + tile.pixels[i][0];
-                found.known.push((pixel, tile.sums[i] / tile.samples[i] as f32));
+                found.known.push((of_window(tile.pixels[i]), tile.sums[i] / tile.samples[i] as f32));
             }
         }
-        let of_window = |[x, y]: [u32; 2]| y * window.width + x;
         let kept = tile.guides.iter().zip(&tile.samples).map(|(guide, samples)| guide.kept(*samples));
         found.shrink_to_fit();
         found.guides = tile.pixels.iter().map(|pixel| of_window(*pixel)).zip(kept).collect();
         found
+    }
+
+    /// Returns the numbers of samples of film pixels beyond their first `samples`, as multiples of these. Pixels with
+    /// other numbers of first samples get no more.
+    fn multiples(&self, film_pixels: &[[u32; 2]], samples: &[u32], needs: Option<&Needs>) -> Vec<u32> {
+        let more = |(pixel, samples): (&[u32; 2], &u32)| match needs {
+            Some(needs) if *samples == self.settings.spp => needs.choice.more(&needs.luminances, *pixel),
+            _ => 0,
+        };
+        film_pixels.iter().zip(samples).map(more).collect()
     }
 
     /// Returns the random number that thins the points of a film pixel whose samples start with `first`.

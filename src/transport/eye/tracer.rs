@@ -68,6 +68,32 @@ impl<'b, 'w> PixelSamples<'b, 'w> {
     }
 }
 
+/// Sums over the radiances of some samples of a pixel.
+#[derive(Default)]
+struct PixelSums {
+    all: Rgb,
+    /// Sum over the samples before the middle.
+    half: Rgb,
+    /// Number of radiances left out because they were not finite.
+    nonfinite: u64,
+}
+
+impl PixelSums {
+    /// Sums numbered radiances.
+    fn new(radiances: impl Iterator<Item = (u32, Rgb)>, middle: u32) -> PixelSums {
+        let mut sums = PixelSums::default();
+        for (number, value) in radiances {
+            if value.is_finite() {
+                sums.all += value;
+                sums.half += if number < middle { value } else { Rgb::ZERO };
+            } else {
+                sums.nonfinite += 1;
+            }
+        }
+        sums
+    }
+}
+
 /// Light and shading points of the first samples of a tile's pixels.
 pub(super) struct SampledTile<'w> {
     /// Pixels of the window.
@@ -157,8 +183,6 @@ impl<'a, 'w> Tracer<'a, 'w> {
         mut each: impl FnMut(PixelSamples<'_, 'w>, &mut Vec<MergedPoint<'w>>),
     ) -> EyeCounts {
         let TracerWorkspace { batch, ends, merged } = work;
-        let estimand =
-            if self.settings.spp > 1 { Estimand::Pixels } else { Estimand::EyeSamples { spp: 1, seed } };
         let mut chains = EyeCounts::default();
         let middle = samples.start + samples.len() as u32 / 2;
         let together = (BATCH / samples.len().max(1) as u32).max(1) as usize;
@@ -166,18 +190,8 @@ impl<'a, 'w> Tracer<'a, 'w> {
             for first in samples.clone().step_by(BATCH as usize) {
                 let part = first..first.saturating_add(BATCH).min(samples.end);
                 let n = part.len();
-                let mut paths = pixels.iter().flat_map(|pixel| {
-                    part.clone().map(move |sample| PathStart { pixel: *pixel, sample, seed })
-                });
                 ends.in_groups = n >= MIN_GROUPED;
-                let add = |batch: &mut Batch, paths: &mut dyn Iterator<Item = PathStart>| {
-                    start(batch, paths, self.world, self.view, estimand, self.settings.spp);
-                };
-                match n.is_multiple_of(LANES) || LANES.is_multiple_of(n) {
-                    true => add(batch, &mut paths),
-                    // A pixel's samples share packets in one way, whatever pixels are traced with it.
-                    false => (0..pixels.len()).for_each(|_| add(batch, &mut paths.by_ref().take(n))),
-                }
+                self.start(batch, pixels, part.clone(), seed);
                 ends.lookups = CausticLookups::new(n as u32);
                 ends.found.clear();
                 ends.order.clear();
@@ -198,21 +212,14 @@ impl<'a, 'w> Tracer<'a, 'w> {
                 }
                 let (found, mut rest) = (&ends.found[..], &ends.order[..]);
                 for i in 0..pixels.len() {
-                    let (mut sum, mut half, mut nonfinite) = (Rgb::ZERO, Rgb::ZERO, 0);
-                    for (number, value) in part.clone().zip(radiance.by_ref().take(n)) {
-                        if value.is_finite() {
-                            sum += value;
-                            half += if number < middle { value } else { Rgb::ZERO };
-                        } else {
-                            nonfinite += 1;
-                        }
-                    }
-                    chains.light += f64::from(luminance(sum));
+                    let sums = PixelSums::new(part.clone().zip(radiance.by_ref().take(n)), middle);
+                    chains.light += f64::from(luminance(sums.all));
                     let own;
                     (own, rest) =
                         rest.split_at(rest.partition_point(|(path, _)| *path < ((i + 1) * n) as u32));
                     let index = chunk * together + i;
                     let guide = ends.first_surfaces.as_ref().map_or_else(Guide::default, |first| first.of(i));
+                    let PixelSums { all: sum, half, nonfinite } = sums;
                     each(
                         PixelSamples { index, first, sum, half, nonfinite, guide, ends: found, order: own },
                         merged,
@@ -221,5 +228,23 @@ impl<'a, 'w> Tracer<'a, 'w> {
             }
         }
         chains
+    }
+
+    /// Starts one path for each of some samples of pixels.
+    fn start(&self, batch: &mut Batch, pixels: &[[u32; 2]], samples: Range<u32>, seed: u32) {
+        let spp = self.settings.spp;
+        let estimand = if spp > 1 { Estimand::Pixels } else { Estimand::EyeSamples { spp: 1, seed } };
+        let n = samples.len();
+        let mut paths = pixels
+            .iter()
+            .flat_map(|pixel| samples.clone().map(move |sample| PathStart { pixel: *pixel, sample, seed }));
+        let add = |batch: &mut Batch, paths: &mut dyn Iterator<Item = PathStart>| {
+            start(batch, paths, self.world, self.view, estimand, spp);
+        };
+        match n.is_multiple_of(LANES) || LANES.is_multiple_of(n) {
+            true => add(batch, &mut paths),
+            // A pixel's samples share packets in one way, whatever pixels are traced with it.
+            false => (0..pixels.len()).for_each(|_| add(batch, &mut paths.by_ref().take(n))),
+        }
     }
 }

@@ -41,7 +41,7 @@ mod table;
 mod tables;
 
 pub use alike16::AlikeBsdfs16;
-pub use lobe::{DirectionBound, DirectionBounds16, DullLobe, LobeShape};
+pub use lobe::{BsdfSample, DirectionBound, DirectionBounds16, DullLobe, LobeShape};
 pub use lobe_set::LobeSet;
 pub use materials::Materials;
 pub use mean::MeanBsdf;

@@ -17,7 +17,7 @@ mod report;
 
 use super::coincident::drop_coincident_emitters;
 use super::framing;
-use crate::draft::Draft;
+use crate::draft::{Draft, DraftMesh};
 use crate::error::{Log, SceneError};
 use crate::local::LocalCoordinates;
 use attributes::repair_attributes;
@@ -53,10 +53,7 @@ pub(crate) fn sanitize(
         lost += drop_rounded(mesh, group.map_or(&coordinates, |group| &group.coordinates), &mut report);
         use_all_vertices(mesh);
         repair_normals(mesh, &mut report);
-        let bad_uvs = mesh.uvs.iter_mut().filter(|uv| !uv.is_finite());
-        report.bad_uvs += bad_uvs.map(|uv| *uv = Vec2::ZERO).count();
-        let bad_tangents = mesh.tangents.iter_mut().filter(|tangent| !tangent.is_finite());
-        report.bad_tangents += bad_tangents.map(|tangent| *tangent = Vec4::ZERO).count();
+        repair_coordinates(mesh, &mut report);
         report.turned += mesh.turned;
     }
     if lost as f64 > MAX_LOST * triangles as f64 {
@@ -95,6 +92,14 @@ pub(crate) fn sanitize(
     let checked = check_lights(draft, &coordinates, &mut report);
     log.conclude(checked)?;
     Ok((report, coordinates))
+}
+
+/// Sets texture coordinates and tangents that are not finite to zero.
+fn repair_coordinates(mesh: &mut DraftMesh, report: &mut SanitizeReport) {
+    let bad_uvs = mesh.uvs.iter_mut().filter(|uv| !uv.is_finite());
+    report.bad_uvs += bad_uvs.map(|uv| *uv = Vec2::ZERO).count();
+    let bad_tangents = mesh.tangents.iter_mut().filter(|tangent| !tangent.is_finite());
+    report.bad_tangents += bad_tangents.map(|tangent| *tangent = Vec4::ZERO).count();
 }
 
 #[cfg(test)]
