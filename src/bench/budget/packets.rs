@@ -61,8 +61,6 @@ struct EyeHits<'a> {
     surfaces: &'a Surfaces16,
     bsdfs: &'a Bsdfs16<'a>,
     samplers: &'a Samplers16,
-    /// Lanes in which light samples are the only estimator.
-    alone: u16,
 }
 
 impl Packets {
@@ -139,8 +137,7 @@ impl TileRays {
             normal.set(i, if bsdfs.lane(i).scatters_across() { Vec3::ZERO } else { towards });
         }
         let at = Receivers16 { position: &surfaces.position, normal: &normal, learned: None };
-        let alone = bsdfs.lambertian() & world.emitters.look_small(at);
-        let hit = EyeHits { found, surfaces: &surfaces, bsdfs: &bsdfs, samplers: &samplers, alone };
+        let hit = EyeHits { found, surfaces: &surfaces, bsdfs: &bsdfs, samplers: &samplers };
         self.add_shadow_rays(source, &hit, at);
         self.add_bsdf_rays(world, &hit);
         if self.eye.full.len().is_multiple_of(SCATTERED) {
@@ -181,14 +178,9 @@ impl TileRays {
 
     /// Adds the rays that continue from the hits. Those that can find only the environment are shadow rays.
     fn add_bsdf_rays(&mut self, world: &World, hit: &EyeHits) {
-        let bends_light = world.specular.bends_light();
-        let wanted = if bends_light { hit.found } else { hit.found & !hit.alone };
-        if wanted == 0 {
-            return;
-        }
         let (choices, places) = (hit.samplers.point(CHOICE).y, hit.samplers.point(DIRECTION));
-        let samples = hit.bsdfs.sample(&choices, &places, wanted);
-        let going_on = wanted & samples.going_on();
+        let samples = hit.bsdfs.sample(&choices, &places, hit.found);
+        let going_on = hit.found & samples.going_on();
         let mut rays = Rays16::default();
         for i in 0..LANES {
             let direction = hit.surfaces.frame(i).to_world(samples.wi.get(i));
@@ -196,8 +188,8 @@ impl TileRays {
             rays.set(i, &shadow::ray_from(position, normal, direction));
         }
         let (origins, directions) = (rays.origins(), rays.directions());
-        let mut met = world.emitters.may_be_met(&origins, &directions) & !hit.alone;
-        if bends_light {
+        let mut met = world.emitters.may_be_met(&origins, &directions);
+        if world.specular.bends_light() {
             met |= world.specular.may_be_met(&origins, &directions);
         }
         for i in lanes_in(going_on) {
@@ -205,7 +197,7 @@ impl TileRays {
             let is_chain = bsdf.has_delta() || bsdf.sharp_lobes() != LobeSet::default();
             if is_chain || met & 1 << i != 0 {
                 self.bsdf.push(&rays.get(i));
-            } else if world.emitters.environment.is_some() && hit.alone & 1 << i == 0 {
+            } else if world.emitters.environment.is_some() {
                 self.shadow.push(&rays.get(i));
             }
         }

@@ -38,8 +38,6 @@ struct PacketLightSample<'a> {
     requested: LightSamples,
     /// Lanes to sample.
     lit: u16,
-    /// Lanes in which light samples are the only estimator.
-    alone: u16,
     guided: &'a Guided,
 }
 
@@ -57,7 +55,6 @@ impl<'w> GroupedVertices<'_, 'w> {
     /// Samples light and the next directions. Turns the paths of the groups' lanes into their continuations and returns
     /// the lanes that continue.
     pub fn scatter<R: PathPolicy<'w>>(&mut self, packet: &mut Packet, policy: &mut R) -> u16 {
-        let (world, surfaces) = (self.world, self.surfaces);
         let (mut all, mut smooth, mut lambert) = (0, 0, 0);
         for group in self.groups.iter_mut() {
             packet.normal.fill(&group.bits, group.normal);
@@ -66,8 +63,6 @@ impl<'w> GroupedVertices<'_, 'w> {
             lambert |= if group.bsdf.is_lambert() { group.lanes } else { 0 };
             group.chained = policy.followed(group.bsdf.bsdf());
         }
-        let at = Receivers16 { position: &surfaces.position, normal: &packet.normal, learned: None };
-        let alone = lambert & world.emitters.look_small(at);
         let guided = Guided {
             lanes: if policy.edges().guided > 0.0 { lambert } else { 0 },
             share: policy.edges().guided,
@@ -76,17 +71,13 @@ impl<'w> GroupedVertices<'_, 'w> {
         let requested = policy.light_samples();
         packet.light_samples = [requested.count as f32; LANES];
         for sample in 0..requested.count {
-            let step = PacketLightSample { sample, requested, lit: smooth, alone, guided: &guided };
+            let step = PacketLightSample { sample, requested, lit: smooth, guided: &guided };
             if smooth != 0 {
                 self.light(packet, step, policy);
             }
         }
-        let wanted = if world.specular.bends_light() { all } else { all & !alone };
-        if wanted == 0 {
-            return 0;
-        }
-        let sampled = self.sample(packet, wanted, &guided);
-        self.go_on(packet, &sampled, alone)
+        let sampled = self.sample(packet, all, &guided);
+        self.go_on(packet, &sampled)
     }
 
     /// Passes the groups to `policy` as ends of chains and first surfaces, and adds the light that it knows of.
@@ -176,16 +167,15 @@ impl<'w> GroupedVertices<'_, 'w> {
             blend(&mut pdf, &group.bits, &p);
             blend(&mut cos, &group.bits, &wi.z);
         }
-        for i in lanes_in(useful & step.guided.lanes & !step.alone) {
+        for i in lanes_in(useful & step.guided.lanes) {
             let (x, n) = (self.surfaces.position.get(i), packet.normal.get(i));
             pdf[i] = step.guided.density(self.world, x, n, lights.direction.get(i), pdf[i]);
         }
         let count = step.requested.count as f32;
         let (mut radiance, mut scattered) = (Vec3x16::default(), [0; LANES]);
         for i in 0..LANES {
-            let only = (lights.delta[i] != 0) | (step.alone >> i & 1 != 0);
             let light_pdf = count * lights.pdf[i];
-            let weight = if only { 1.0 } else { power_heuristic(light_pdf, pdf[i]) };
+            let weight = if lights.delta[i] != 0 { 1.0 } else { power_heuristic(light_pdf, pdf[i]) };
             let value = value.get(i);
             radiance.set(i, value * lights.radiance.get(i) * (cos[i].abs() * weight / light_pdf));
             scattered[i] = u32::from((value.x != 0.0) | (value.y != 0.0) | (value.z != 0.0));
@@ -247,7 +237,7 @@ impl<'w> GroupedVertices<'_, 'w> {
     }
 
     /// Turns the paths into their continuations along the sampled directions. Returns the lanes that continue.
-    fn go_on(&self, packet: &mut Packet, sampled: &Sampled, alone: u16) -> u16 {
+    fn go_on(&self, packet: &mut Packet, sampled: &Sampled) -> u16 {
         let (world, surfaces) = (self.world, self.surfaces);
         let mut found = sampled.goes_on;
         packet.throughput = sampled.throughput;
@@ -262,7 +252,7 @@ impl<'w> GroupedVertices<'_, 'w> {
                     next_class(packet.path_class[lane], [true, false], surfaces.mesh[lane]);
             }
         }
-        let blind = if world.emitters.are_hittable() { alone } else { found & !sampled.in_chain };
+        let blind = if world.emitters.are_hittable() { 0 } else { found & !sampled.in_chain };
         if world.specular.bends_light() {
             packet.emission_throughput.keep(!blind);
         } else {

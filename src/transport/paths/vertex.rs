@@ -49,8 +49,6 @@ struct LightStep<'a, 'w> {
     u_light: &'a Vec2x16,
     /// Lanes to sample.
     wanted: u16,
-    /// Lanes in which light samples are the only estimator.
-    alone: u16,
     guided: &'a Guided,
 }
 
@@ -131,13 +129,6 @@ impl Packet {
         let scattered = if R::STOPS_AT_DIFFUSE { found & self.at(PathStage::Scattered) } else { 0 };
         let by_glossy = R::STOPS_AT_DIFFUSE && policy.goes_on_by_glossy_lobes();
         let glossy = if by_glossy { bsdfs.keep_glossy(scattered) } else { 0 };
-        // Chain ends on diffuse surfaces from which emitters look small use light samples alone.
-        let alone = if R::STOPS_AT_DIFFUSE {
-            let at = Receivers16 { position: &surfaces.position, normal: &self.normal, learned: None };
-            at_end & bsdfs.lambertian() & world.emitters.look_small(at)
-        } else {
-            0
-        };
         let edges = if R::STOPS_AT_DIFFUSE { policy.edges() } else { ScatteredEdges::default() };
         let share = edges.guided;
         let guided = Guided { lanes: if share > 0.0 { at_end & bsdfs.lambertian() } else { 0 }, share };
@@ -167,7 +158,7 @@ impl Packet {
                 let at = Receivers16 { position: &surfaces.position, normal: &self.normal, learned };
                 let (bsdfs, guided, wanted) = (&bsdfs, &guided, lit);
                 let (u_choice, u_light) = (&choice, &samplers.point(pair));
-                let step = LightStep { bsdfs, at, u_choice, u_light, wanted, alone, guided };
+                let step = LightStep { bsdfs, at, u_choice, u_light, wanted, guided };
                 self.light(world, surfaces, step, &mut arrives);
             }
             lit &= many;
@@ -197,11 +188,9 @@ impl Packet {
         if R::STOPS_AT_DIFFUSE {
             let by_specular_lobes = world.specular.bends_light();
             found &= samples.going_on() & mask_of(&survives) & (!scattered | samples.delta() | glossy);
-            found &= if by_specular_lobes { u16::MAX } else { !alone };
             at_end &= found;
             self.follow(&bsdfs, &samples, surfaces, at_end, pair + 3, &chained);
-            let blind =
-                if world.emitters.are_hittable() { alone } else { at_end & !self.at(PathStage::Chain) };
+            let blind = if world.emitters.are_hittable() { 0 } else { at_end & !self.at(PathStage::Chain) };
             if by_specular_lobes {
                 self.emission_throughput.keep(!blind);
             } else {
@@ -367,7 +356,7 @@ impl Packet {
         step: LightStep,
         mut arrives: impl FnMut(Option<&Ray>, Rgb, u32),
     ) {
-        let LightStep { bsdfs, at, u_choice, u_light, wanted, alone, guided } = step;
+        let LightStep { bsdfs, at, u_choice, u_light, wanted, guided } = step;
         let lights = world.emitters.sample_direct(at, u_choice, u_light, wanted);
         let mut wi = Vec3x16::default();
         for i in 0..LANES {
@@ -375,15 +364,14 @@ impl Packet {
         }
         let wanted = wanted & lights.useful();
         let (value, mut pdf) = bsdfs.eval_pdf(&wi, wanted);
-        for i in lanes_in(wanted & guided.lanes & !alone) {
+        for i in lanes_in(wanted & guided.lanes) {
             let (x, n) = (surfaces.position.get(i), self.normal.get(i));
             pdf[i] = guided.density(world, x, n, lights.direction.get(i), pdf[i]);
         }
         let (mut radiance, mut scattered) = (Vec3x16::default(), [0; LANES]);
         for i in 0..LANES {
-            let only = (lights.delta[i] != 0) | ((alone >> i) & 1 != 0);
             let light_pdf = self.light_samples[i] * lights.pdf[i];
-            let weight = if only { 1.0 } else { power_heuristic(light_pdf, pdf[i]) };
+            let weight = if lights.delta[i] != 0 { 1.0 } else { power_heuristic(light_pdf, pdf[i]) };
             let value = value.get(i);
             let factor = wi.z[i].abs() * weight / light_pdf;
             radiance.set(i, self.throughput.get(i) * value * lights.radiance.get(i) * factor);

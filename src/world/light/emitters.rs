@@ -13,9 +13,6 @@ use scene::{DeltaLight, Scene};
 /// Entry of [`Emitters::light_of_mesh`] for a mesh that does not emit.
 const NO_LIGHT: u32 = u32::MAX;
 
-/// Ratio of radius to distance below which an emitter counts as small.
-const SMALL: f32 = 0.3;
-
 /// Ratio of an emitter's radius to the scene's below which its light comes from few directions.
 const FEW_DIRECTIONS: f32 = 0.1;
 
@@ -114,23 +111,6 @@ impl Emitters {
     /// Learns the visibility of all emitters but the environment; `None` if nearly all are visible from everywhere.
     pub fn learn_emitters(&self, observations: &EmitterObservations) -> Option<LearnedEmitters> {
         self.choice.learn(observations)
-    }
-
-    /// Returns the lanes from which all emitters that a ray can hit are so small that BSDF samples of a diffuse surface
-    /// hardly ever hit them.
-    #[inline]
-    pub fn look_small(&self, at: Receivers16) -> u16 {
-        if self.environment.is_some() || self.areas.len() > MAX_TESTED {
-            return 0;
-        }
-        let mut small = [1; LANES];
-        for (centre, radius_sq) in &self.spheres {
-            for i in 0..LANES {
-                let dist_sq = centre.distance_squared(at.position.get(i));
-                small[i] &= u32::from(*radius_sq < SMALL * SMALL * dist_sq);
-            }
-        }
-        mask_of(&small)
     }
 
     /// Returns the lanes whose rays, of unit direction, may hit an emitting surface.
