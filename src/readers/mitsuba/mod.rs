@@ -21,6 +21,7 @@ mod texture;
 mod thin;
 mod tree;
 mod value;
+mod xml_file;
 
 use crate::error::{Log, SceneError};
 use crate::file::{folder_of, stem_of};

@@ -5,6 +5,7 @@
 
 use super::grammar::{has_attribute, is_object, snake_case};
 use super::value::{self, PropertyValue};
+use super::xml_file::XmlFile;
 use crate::error::{Location, Log, SceneError};
 use crate::file::{folder_of, read_text};
 use std::cell::Cell;
@@ -178,43 +179,40 @@ impl XmlReader<'_> {
         self.sources.push((path.to_owned(), hash));
         let parsed = roxmltree::Document::parse(&text);
         let document = parsed.map_err(|e| Location::line(path, e.pos().row).malformed(e.to_string()))?;
+        let file = &XmlFile::new(path, &text);
         let root = document.root_element();
         if root.tag_name().name() == "scene" {
-            let place = self.place(path, &root);
+            let place = file.place(&root);
             let Some(version) = root.attribute("version") else {
                 let remedy = "give it one, e.g. <scene version=\"3.0.0\">";
                 return Err(place.wrong("the scene has no version", remedy));
             };
             self.is_old |= self.sources.len() == 1 && version.starts_with("0.");
             self.report_unknown(&root, &place)?;
-            self.contents(path, &root, parent, depth);
+            self.contents(file, &root, parent, depth);
         } else {
-            self.element(path, &root, parent, name, depth + 1)?;
+            self.element(file, &root, parent, name, depth + 1)?;
         }
         Ok(())
     }
 
-    fn place(&self, path: &Path, node: &roxmltree::Node) -> Location {
-        Location::line(path, node.document().text_pos_at(node.range().start).row)
-    }
-
     /// Reads the elements inside `node` into `parent`. Elements with an error are left out.
-    fn contents(&mut self, path: &Path, node: &roxmltree::Node, parent: &mut Object, depth: usize) {
+    fn contents(&mut self, file: &XmlFile, node: &roxmltree::Node, parent: &mut Object, depth: usize) {
         for child in node.children().filter(|child| child.is_element()) {
-            let read = self.element(path, &child, parent, None, depth + 1);
+            let read = self.element(file, &child, parent, None, depth + 1);
             self.log.part(read);
         }
     }
 
     fn element(
         &mut self,
-        path: &Path,
+        file: &XmlFile,
         node: &roxmltree::Node,
         parent: &mut Object,
         given_name: Option<String>,
         depth: usize,
     ) -> Result<(), SceneError> {
-        let place = self.place(path, node);
+        let place = file.place(node);
         if depth > MAX_DEPTH {
             return Err(place.wrong("elements or includes nested too deeply", "flatten the file"));
         }
@@ -234,10 +232,10 @@ impl XmlReader<'_> {
         match node.tag_name().name() {
             "default" => self.add_default(need("name")?, need("value")?),
             "include" => {
-                let (name, file) = (get("name").map(str::to_owned), need("filename")?);
-                let beside = || folder_of(path).join(file);
-                let file = in_folders(&self.folders, file).unwrap_or_else(beside);
-                self.file(&file, &place, parent, name, depth + 1)?;
+                let (name, included) = (get("name").map(str::to_owned), need("filename")?);
+                let beside = || folder_of(file.path).join(included);
+                let included = in_folders(&self.folders, included).unwrap_or_else(beside);
+                self.file(&included, &place, parent, name, depth + 1)?;
             }
             "alias" => {
                 let id = need("id")?;
@@ -245,16 +243,16 @@ impl XmlReader<'_> {
                 self.ids.insert(need("as")?.to_owned(), object);
             }
             "ref" => parent.children.push(child(ChildTarget::Reference(need("id")?.to_owned()))),
-            "path" => self.add_folder(folder_of(path).join(need("value")?), &place)?,
+            "path" => self.add_folder(folder_of(file.path).join(need("value")?), &place)?,
             tag if is_object(tag) || (tag == "spectrum" && get("type").is_some()) => {
                 let kind = if tag == "spectrum" { "texture" } else { tag };
                 let mut object = Object::new(kind, need("type")?, get("id"), place.clone());
-                self.contents(path, node, &mut object, depth);
+                self.contents(file, node, &mut object, depth);
                 parent.children.push(child(ChildTarget::Own(self.declared(object)?)));
             }
             tag => {
                 let value = match tag {
-                    "transform" => self.transform(path, node)?,
+                    "transform" => self.transform(file, node)?,
                     _ => value::parse(tag, &attributes, &place)?,
                 };
                 let name = snake_case(need("name")?);
@@ -309,10 +307,10 @@ impl XmlReader<'_> {
         }
     }
 
-    fn transform(&mut self, path: &Path, node: &roxmltree::Node) -> Result<PropertyValue, SceneError> {
+    fn transform(&mut self, file: &XmlFile, node: &roxmltree::Node) -> Result<PropertyValue, SceneError> {
         let mut operations = Vec::new();
         for child in node.children().filter(|n| n.is_element()) {
-            let place = self.place(path, &child);
+            let place = file.place(&child);
             self.report_unknown(&child, &place)?;
             let attributes = self.attributes(&child, &place)?;
             operations.push((child.tag_name().name().to_owned(), attributes, place));
