@@ -211,7 +211,7 @@ impl Renderer for Settings {
 
         let mut image = ShadedImage::new(&eye, self.inspect);
         let tasks = tally.time(Stage::Splat, || match &frame {
-            Some(frame) => resolve(&frame, &records, &eye, cache.samples_direct_light(), &mut image),
+            Some(frame) => resolve(frame, &records, &eye, cache.samples_direct_light(), &mut image),
             None => (0..eye.len() as u32).map(ShadingTask::all).collect(),
         });
         image.came_by("records");
