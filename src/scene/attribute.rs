@@ -4,6 +4,7 @@
 
 use base::math::Rgb;
 use glam::Vec2;
+use std::ops::{Add, Mul};
 
 /// Number of an attribute's name, the same in all meshes of a scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -59,8 +60,8 @@ impl AttributeValues {
     }
 }
 
-/// Returns the value at barycentric weights `b` of the last two corners.
+/// Returns the value at barycentric weights `at` of the last two corners.
 #[inline]
-pub fn interpolated([a, b, c]: [Rgb; 3], at: Vec2) -> Rgb {
+pub fn interpolated<T: Add<Output = T> + Mul<f32, Output = T>>([a, b, c]: [T; 3], at: Vec2) -> T {
     a * (1.0 - at.x - at.y) + b * at.x + c * at.y
 }

@@ -1,6 +1,6 @@
 //! Indexed triangle meshes.
 
-use super::attribute::{Attribute, AttributeId};
+use super::attribute::{Attribute, AttributeId, interpolated};
 use super::material::MaterialId;
 use super::texture::TextureId;
 use base::math::Rgb;
@@ -58,11 +58,13 @@ impl Mesh {
     /// `b` are the barycentric weights of the last two of a triangle's `vertices`.
     #[inline]
     pub fn normal(&self, vertices: &[u32; 3], b: Vec2) -> Option<Vec3> {
-        if self.normals.is_empty() {
-            return None;
-        }
-        let [n0, n1, n2] = vertices.map(|i| self.normals[i as usize]);
-        Some(n0 * (1.0 - b.x - b.y) + n1 * b.x + n2 * b.y)
+        self.corner_normals(vertices).map(|normals| interpolated(normals, b))
+    }
+
+    /// Returns the normals at a triangle's `vertices`; `None` if the mesh has no normals.
+    #[inline]
+    pub fn corner_normals(&self, vertices: &[u32; 3]) -> Option<[Vec3; 3]> {
+        (!self.normals.is_empty()).then(|| vertices.map(|i| self.normals[i as usize]))
     }
 
     /// Returns the interpolated tangent, not of unit length; `None` if the mesh has no tangents.
@@ -73,8 +75,7 @@ impl Mesh {
         if self.tangents.is_empty() {
             return None;
         }
-        let [t0, t1, t2] = vertices.map(|i| self.tangents[i as usize]);
-        Some(t0 * (1.0 - b.x - b.y) + t1 * b.x + t2 * b.y)
+        Some(interpolated(vertices.map(|i| self.tangents[i as usize]), b))
     }
 
     /// Returns the texture coordinates, or `b` if the mesh has none.
@@ -85,8 +86,7 @@ impl Mesh {
         if self.uvs.is_empty() {
             return b;
         }
-        let [u0, u1, u2] = vertices.map(|i| self.uvs[i as usize]);
-        u0 * (1.0 - b.x - b.y) + u1 * b.x + u2 * b.y
+        interpolated(vertices.map(|i| self.uvs[i as usize]), b)
     }
 
     /// Returns the value of an attribute at barycentric weights `b` of the last two corners of triangle `t`; white if

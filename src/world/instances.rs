@@ -11,7 +11,7 @@
 use super::triangle::Triangle;
 use base::math::Placement;
 use glam::{Vec2, Vec3, Vec4};
-use scene::{Mesh, Scene};
+use scene::{Mesh, Scene, interpolated};
 
 /// Placement of a mesh that has none.
 const OWN: u32 = u32::MAX;
@@ -96,11 +96,8 @@ impl SeenAt<'_> {
     #[inline]
     pub fn normal(&self, vertices: &[u32; 3], b: Vec2) -> Option<Vec3> {
         let Some(placement) = self.placement else { return self.mesh.normal(vertices, b) };
-        if self.mesh.normals.is_empty() {
-            return None;
-        }
-        let [n0, n1, n2] = vertices.map(|i| placement.normal(self.mesh.normals[i as usize]));
-        Some(n0 * (1.0 - b.x - b.y) + n1 * b.x + n2 * b.y)
+        let placed = |normals: [Vec3; 3]| normals.map(|normal| placement.normal(normal));
+        self.mesh.corner_normals(vertices).map(|normals| interpolated(placed(normals), b))
     }
 
     /// Returns the interpolated tangent (see [`Mesh::tangent`]).
@@ -110,7 +107,7 @@ impl SeenAt<'_> {
         if self.mesh.tangents.is_empty() {
             return None;
         }
-        let [t0, t1, t2] = vertices.map(|i| placement.tangent(self.mesh.tangents[i as usize]));
-        Some(t0 * (1.0 - b.x - b.y) + t1 * b.x + t2 * b.y)
+        let placed = |i| placement.tangent(self.mesh.tangents[i as usize]);
+        Some(interpolated(vertices.map(placed), b))
     }
 }

@@ -66,7 +66,7 @@ impl EmissionFactor {
     #[inline]
     pub fn at(&self, triangle: u32, b: Vec2) -> Rgb {
         let uv = match self.uvs.get(triangle as usize) {
-            Some([u0, u1, u2]) => *u0 * (1.0 - b.x - b.y) + *u1 * b.x + *u2 * b.y,
+            Some(corners) => interpolated(*corners, b),
             None => b,
         };
         let attribute = |id| {

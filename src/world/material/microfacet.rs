@@ -277,37 +277,40 @@ fn gaussian_slope(u: f32) -> f32 {
 }
 
 /// Samples the slope of a visible facet along the view, for unit roughness. The distribution (cos θ - x sin θ)⁺
-/// exp(-x²) is inverted by Newton's method within a bracket.
+/// exp(-x²) is inverted by Halley's method within a bracket.
 fn visible_gaussian_slope(stretched: Vec3, u: f32) -> f32 {
     let cos = stretched.z;
     let sin = (stretched.x * stretched.x + stretched.y * stretched.y).sqrt();
     let u = u.clamp(1e-7, 1.0 - 1e-7);
-    // Twice the unnormalised distribution function.
-    let cdf = |x: f32| {
-        let gauss = (-x * x).exp();
+    // exp(-x²), and twice the unnormalised distribution function.
+    let gauss_cdf = |x: f32| {
+        let gauss = lane_exp(-x * x);
         let tail = gauss * scaled_erfc(x.abs());
-        cos * (if x < 0.0 { tail } else { 2.0 - tail }) + sin * FRAC_1_SQRT_PI * gauss
+        (gauss, cos * (if x < 0.0 { tail } else { 2.0 - tail }) + sin * FRAC_1_SQRT_PI * gauss)
     };
     let mut high = if cos < 4.5 * sin { cos / sin } else { 4.5 };
     let mut low = -4.5;
-    let target = u * cdf(high);
+    let target = u * gauss_cdf(high).1;
     // Exact for grazing incidence, and for normal incidence to first order in the inclination.
     let mut x = cos * (erf_inv(2.0 * u - 1.0) - 0.5 * sin) - (1.0 - cos) * (-u.ln()).sqrt();
     for _ in 0..16 {
         if !(x > low && x < high) {
             x = 0.5 * (low + high);
         }
-        let error = cdf(x) - target;
+        let (gauss, cdf) = gauss_cdf(x);
+        let error = cdf - target;
         if error > 0.0 {
             high = x;
         } else {
             low = x;
         }
-        let slope = 2.0 * FRAC_1_SQRT_PI * (-x * x).exp() * (cos - x * sin);
-        let step = error / slope;
+        let visible = cos - x * sin;
+        let newton = error / (2.0 * FRAC_1_SQRT_PI * gauss * visible);
+        // The second derivative over the first is -2 x - sin / visible.
+        let step = newton / (1.0 + newton * (x + 0.5 * sin / visible)).max(0.3);
         x -= step;
-        if step.abs() < 3e-4 {
-            break; // Convergence is quadratic: the next step would be lost in rounding.
+        if step.abs() < 0.01 {
+            break; // Convergence is cubic: the next step would be below 1e-5.
         }
     }
     x.clamp(-4.5, 4.5)

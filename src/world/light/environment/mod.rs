@@ -229,15 +229,14 @@ impl EnvironmentLight {
             return samples;
         }
         let tables = self.tables(learned);
-        let (mut positions, mut densities) = ([0; LANES], [0.0; LANES]);
-        for i in lanes_in(wanted) {
-            let (tile, rest) = tables[i].sample(u.x[i]);
-            positions[i] = self.presamples.find(tile, Vec2::new(rest, u.y[i]));
-            densities[i] = tables[i].density(tile);
-        }
+        let (tiles, rest) = TileTable::sample16(&tables, &u.x, wanted);
+        let positions = each(wanted, |i| self.presamples.find(tiles[i], Vec2::new(rest[i], u.y[i])));
+        // Short loops, so that many lanes wait for memory at once.
+        let densities = each(wanted, |i| tables[i].density(tiles[i]));
+        let presamples = each(wanted, |i| *self.presamples.get(positions[i]));
         let mut on_discs = 0;
         for i in lanes_in(wanted) {
-            let presample = self.presamples.get(positions[i]);
+            let presample = &presamples[i];
             samples.set(i, presample.direction, presample.radiance, presample.density);
             on_discs |= u16::from(presample.on_disc) << i;
         }

@@ -1,6 +1,7 @@
 //! Distributions over tiles.
 
 use super::tiles::Tile;
+use base::math::{F32x16, LANES, lanes_in};
 
 /// Number of sums that are compared at once: a cache line.
 const WIDTH: usize = 16;
@@ -42,11 +43,44 @@ impl TileTable {
     #[inline]
     pub fn sample(&self, u: f32) -> (usize, f32) {
         let u = u * self.total;
+        let line = self.line_at(u);
+        self.tile_in(line, &self.cumulative[line], u)
+    }
+
+    /// Returns [`TileTable::sample`] of the tables and numbers in the lanes of `wanted`. The lanes wait for memory
+    /// together, because the tables of many regions exceed the caches.
+    #[inline]
+    pub fn sample16(tables: &[&TileTable; LANES], u: &F32x16, wanted: u16) -> ([usize; LANES], F32x16) {
+        let (mut places, mut numbers) = ([0; LANES], [0.0; LANES]);
+        for i in lanes_in(wanted) {
+            numbers[i] = u[i] * tables[i].total;
+            places[i] = tables[i].line_at(numbers[i]);
+        }
+        let mut lines = [[0.0; WIDTH]; LANES];
+        for i in lanes_in(wanted) {
+            lines[i] = tables[i].cumulative[places[i]];
+        }
+        let (mut found, mut rest) = ([0; LANES], [0.0; LANES]);
+        for i in lanes_in(wanted) {
+            (found[i], rest[i]) = tables[i].tile_in(places[i], &lines[i], numbers[i]);
+        }
+        (found, rest)
+    }
+
+    /// Returns the line of the last sum up to `u`.
+    #[inline]
+    fn line_at(&self, u: f32) -> usize {
         // Sums do not decrease, so that the passed sums can be counted in any order.
-        let passed = |line: &[f32; WIDTH]| line.iter().map(|sum| usize::from(*sum <= u)).sum::<usize>();
-        let line = self.firsts.iter().map(passed).sum::<usize>();
-        let tile = (line * WIDTH + passed(&self.cumulative[line])).clamp(1, self.density.len()) - 1;
-        let at = |i: usize| self.cumulative[i / WIDTH][i % WIDTH];
+        self.firsts.iter().map(|line| passed(line, u)).sum()
+    }
+
+    /// Returns the tile of the last sum up to `u` in the `sums` of a line, and the place of `u` in it from 0 to 1.
+    #[inline]
+    fn tile_in(&self, line: usize, sums: &[f32; WIDTH], u: f32) -> (usize, f32) {
+        let tile = (line * WIDTH + passed(sums, u)).clamp(1, self.density.len()) - 1;
+        let at = |i: usize| {
+            if i / WIDTH == line { sums[i % WIDTH] } else { self.cumulative[i / WIDTH][i % WIDTH] }
+        };
         let (low, high) = (at(tile), at(tile + 1));
         let rest = if high > low { (u - low) / (high - low) } else { 0.0 };
         (tile, rest.clamp(0.0, 1.0 - f32::EPSILON))
@@ -57,6 +91,16 @@ impl TileTable {
     pub fn density(&self, tile: usize) -> f32 {
         self.density[tile]
     }
+}
+
+/// Returns the number of sums of a line up to `u`.
+#[inline]
+fn passed(line: &[f32; WIDTH], u: f32) -> usize {
+    let mut passed = 0;
+    for sum in line {
+        passed += u32::from(*sum <= u);
+    }
+    passed as usize
 }
 
 /// Splits numbers into lines; infinity fills the last line.

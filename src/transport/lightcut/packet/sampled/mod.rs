@@ -68,6 +68,8 @@ pub struct SampledCut {
     cut: PacketLightcut,
     /// Importance of each cluster in each lane, as luminance.
     importance: Vec<F32x16>,
+    /// Samples of all lanes, before their VPLs are read.
+    drawn: Vec<Drawn>,
     /// Samples whose VPLs are visible, by lane.
     visible: [Vec<Sample>; LANES],
     /// Work done so far.
@@ -89,6 +91,21 @@ struct Sample {
     light: Rgb,
     /// Inverse of the density for samples of leaves that may be clamped; infinite for others.
     factor: f32,
+}
+
+/// Sample on its way from a cluster to a descendant.
+#[derive(Clone, Copy)]
+struct Drawn {
+    /// Node reached.
+    node: u32,
+    /// Random number that chooses the descendant.
+    u: f32,
+    /// Number of samples per contribution of the cluster.
+    of_cluster: f32,
+    /// Probability of the node among the cluster's descendants.
+    density: f32,
+    /// Lane of the sample's point.
+    lane: u8,
 }
 
 /// Samples whose rays have not been traced yet.
@@ -192,11 +209,44 @@ impl SampledCut {
         receivers: &ReceiverPacket,
         cursors: &mut [SampleCursor; LANES],
     ) {
+        self.draw(receivers, cursors);
         let trees = transfer.trees;
+        let mut pending = Pending::default();
+        for group in self.drawn.chunks_mut(LANES) {
+            // The samples of a group wait for memory together, because the trees exceed the caches.
+            for _ in 0..LEVELS {
+                group.iter_mut().for_each(|sample| sample.descend(&trees.nodes));
+            }
+            let mut vpls = [trees.vpls[0]; LANES];
+            for (vpl, sample) in vpls.iter_mut().zip(&*group) {
+                *vpl = trees.vpls[trees.nodes[sample.node as usize].representative()];
+            }
+            for (vpl, sample) in vpls.iter().zip(&*group) {
+                let (node, lane) = (&trees.nodes[sample.node as usize], usize::from(sample.lane));
+                let density = sample.of_cluster * sample.density;
+                let receiver = receivers.get(lane);
+                let response = transfer.unshadowed(receiver, vpl, node.kind());
+                if response == Rgb::ZERO {
+                    continue;
+                }
+                let ray = to_vpl(receiver.position(), receiver.geometric_normal(), vpl, node.kind());
+                let factor = if is_weak(node) { density.recip() } else { f32::INFINITY };
+                let sample = Sample { light: response * (node.intensity / density), factor };
+                if pending.push(&ray, sample, lane) {
+                    pending.trace(visibility, &mut self.visible, &mut self.counts);
+                }
+            }
+        }
+        pending.trace(visibility, &mut self.visible, &mut self.counts);
+        self.counts.clusters += self.drawn.len() as u64;
+    }
+
+    /// Draws the clusters and random numbers of all samples, in the order of the clusters.
+    fn draw(&mut self, receivers: &ReceiverPacket, cursors: &mut [SampleCursor; LANES]) {
+        self.drawn.clear();
         // If a total is too small to be divided, its step is 0 and it gives no light.
         let lanes =
             lanes_in(receivers.valid).filter(|lane| cursors[*lane].step > 0.0).fold(0, |l, i| l | 1 << i);
-        let mut pending = Pending::default();
         for (cluster, importance) in self.cut.clusters.iter().zip(&self.importance) {
             for lane in lanes_in(lanes) {
                 let cursor = &mut cursors[lane];
@@ -205,24 +255,17 @@ impl SampledCut {
                     cursor.next += cursor.step;
                     cursor.number += 1;
                     let u = unit(hash(cursor.seed, cursor.number));
-                    let (node, density) = descend(&trees.nodes, cluster.node, u);
-                    let density = importance[lane] / cursor.step * density;
-                    let (vpl, receiver) = (&trees.vpls[node.representative()], receivers.get(lane));
-                    let response = transfer.unshadowed(receiver, vpl, node.kind());
-                    if response == Rgb::ZERO {
-                        continue;
-                    }
-                    let ray = to_vpl(receiver.position(), receiver.geometric_normal(), vpl, node.kind());
-                    let factor = if is_weak(node) { density.recip() } else { f32::INFINITY };
-                    let sample = Sample { light: response * (node.intensity / density), factor };
-                    if pending.push(&ray, sample, lane) {
-                        pending.trace(visibility, &mut self.visible, &mut self.counts);
-                    }
+                    let of_cluster = importance[lane] / cursor.step;
+                    self.drawn.push(Drawn {
+                        node: cluster.node,
+                        u,
+                        of_cluster,
+                        density: 1.0,
+                        lane: lane as u8,
+                    });
                 }
             }
         }
-        pending.trace(visibility, &mut self.visible, &mut self.counts);
-        self.counts.clusters += cursors.iter().map(|cursor| u64::from(cursor.number)).sum::<u64>();
     }
 
     /// Returns the sum of the visible samples of a lane, and the luminance to which weak singularities are limited: the
@@ -284,21 +327,19 @@ impl Pending {
     }
 }
 
-/// Samples a descendant of a node in proportion to luminance; returns it and its probability.
-fn descend(nodes: &[LightNode], node: u32, mut u: f32) -> (&LightNode, f32) {
-    let (mut at, mut density) = (&nodes[node as usize], 1.0);
-    for _ in 0..LEVELS {
-        let Some(left) = at.children() else { break };
-        let [a, b] = [left, left + 1].map(|child| &nodes[child as usize]);
-        let [of_a, of_b] = [a, b].map(|child| luminance(child.intensity));
-        let p = of_a / (of_a + of_b);
-        if u < p {
-            (at, u, density) = (a, u / p, density * p);
+impl Drawn {
+    /// Descends to a child, in proportion to luminance; stays at a leaf.
+    #[inline]
+    fn descend(&mut self, nodes: &[LightNode]) {
+        let Some(left) = nodes[self.node as usize].children() else { return };
+        let [of_left, of_right] = [left, left + 1].map(|child| luminance(nodes[child as usize].intensity));
+        let p = of_left / (of_left + of_right);
+        if self.u < p {
+            (self.node, self.u, self.density) = (left, self.u / p, self.density * p);
         } else {
             // Rounding must not make the number 1, which would choose a right child of probability 0.
-            let rest = ((u - p) / (1.0 - p)).min(1.0 - f32::EPSILON);
-            (at, u, density) = (b, rest, density * (1.0 - p));
+            let rest = ((self.u - p) / (1.0 - p)).min(1.0 - f32::EPSILON);
+            (self.node, self.u, self.density) = (left + 1, rest, self.density * (1.0 - p));
         }
     }
-    (at, density)
 }

@@ -125,8 +125,10 @@ fn what_is_drawn_stands_for_all_light() {
     }
     let trees = LightTrees::build(&[set], Vec::new(), 1.7, Family::Divisive, &Control::new());
     for u in [0.0, 0.25, 0.499_999_97, 0.5, 0.75, 0.999_999_94] {
-        let (node, density) = descend(&trees.nodes, trees.roots[0], u);
-        let of_all = luminance(node.intensity) / density;
+        let mut drawn = Drawn { node: trees.roots[0], u, of_cluster: 1.0, density: 1.0, lane: 0 };
+        (0..LEVELS).for_each(|_| drawn.descend(&trees.nodes));
+        let node = &trees.nodes[drawn.node as usize];
+        let of_all = luminance(node.intensity) / drawn.density;
         assert!(node.is_leaf() && (of_all - 2.0).abs() < 1e-3, "{u}: {of_all}");
     }
 }
