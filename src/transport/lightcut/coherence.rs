@@ -19,33 +19,34 @@ pub struct OrientedPoint {
     pub normal: Vec3,
 }
 
-/// Limit on the differences between points that share a cut.
+/// Number of groups open at once in [`group_coherent`].
+const OPEN: usize = 8;
+
+/// Limit on the differences between points that are likely to have nearly equal cuts.
 #[derive(Clone, Copy, Debug)]
 pub struct CoherenceLimit {
-    /// Minimum cosine between the normals.
-    min_cosine: f32,
     /// Maximum distance.
     max_distance: f32,
-    /// Number of groups open at once in [`group_coherent`].
-    open: usize,
 }
 
 impl CoherenceLimit {
-    /// Creates the limit for points that are likely to have nearly equal cuts, in a scene of this `diagonal`.
-    pub fn close(diagonal: f32) -> CoherenceLimit {
-        CoherenceLimit { min_cosine: 0.8, max_distance: 0.02 * diagonal, open: 8 }
-    }
+    /// Minimum cosine between the normals.
+    const MIN_COSINE: f32 = 0.8;
 
-    /// Creates the limit for points whose common cut is cheaper than a cut for each, in a scene of this `diagonal`.
-    pub fn remote(diagonal: f32) -> CoherenceLimit {
-        CoherenceLimit { min_cosine: 0.5, max_distance: 0.05 * diagonal, open: 64 }
+    /// Maximum distance over the scene's diagonal.
+    const MAX_DISTANCE: f32 = 0.02;
+
+    /// Creates the limit for a scene of this `diagonal`.
+    pub fn of(diagonal: f32) -> CoherenceLimit {
+        CoherenceLimit { max_distance: CoherenceLimit::MAX_DISTANCE * diagonal }
     }
 
     /// True if two points are within the limit.
     #[inline]
     pub fn holds(self, a: OrientedPoint, b: OrientedPoint) -> bool {
         let max_sq = self.max_distance * self.max_distance;
-        a.position.distance_squared(b.position) <= max_sq && a.normal.dot(b.normal) >= self.min_cosine
+        a.position.distance_squared(b.position) <= max_sq
+            && a.normal.dot(b.normal) >= CoherenceLimit::MIN_COSINE
     }
 }
 
@@ -60,7 +61,7 @@ pub fn group_coherent<T: Copy>(
 ) -> Vec<Vec<T>> {
     let mut groups: Vec<Vec<T>> = Vec::new();
     for item in items {
-        let open = groups.len().saturating_sub(limit.open);
+        let open = groups.len().saturating_sub(OPEN);
         let joins = |group: &&mut Vec<T>| {
             group.len() < max_size && same(&group[0], &item) && limit.holds(place(&group[0]), place(&item))
         };

@@ -2,7 +2,7 @@
 
 use super::{ShadeSettings, ShadingTask};
 use crate::eye::{PointGeometry, ShadingPoints};
-use crate::lightcut::{CoherenceLimit, OrientedPoint, group_coherent};
+use crate::lightcut::{CoherenceLimit, OrientedPoint, group_coherent, group_compact};
 use base::math::{Frame, LANES};
 
 /// Minimum number of points of a patch. In smaller patches too few points are interpolated to repay the sixteen
@@ -24,13 +24,19 @@ pub fn patches(
         a.lobe_only == b.lobe_only && a.origin == b.origin && bsdf(a).same_lobes(&bsdf(b))
     };
     let all = tasks.iter().copied();
-    let patches = group_coherent(CoherenceLimit::close(diagonal), all, max_size, place, same);
-    // A cut costs nearly as much for few points as for sixteen, so remnants are grouped with less coherence. All their
-    // points are anchors: they are far apart, and light that reaches one of them need not reach its neighbours.
+    let patches = group_coherent(CoherenceLimit::of(diagonal), all, max_size, place, same);
+    // A cut costs nearly as much for few points as for sixteen, so remnants are grouped again, into full groups. All
+    // their points are anchors: they are far apart, and light that reaches one of them need not reach its neighbours.
     let (mut patches, remnants): (Vec<_>, Vec<_>) =
         patches.into_iter().partition(|patch| patch.len() >= MIN_PATCH);
-    let remnants = remnants.into_iter().flatten();
-    patches.extend(group_coherent(CoherenceLimit::remote(diagonal), remnants, LANES, place, same));
+    let mut alike: Vec<Vec<ShadingTask>> = Vec::new();
+    for task in remnants.into_iter().flatten() {
+        match alike.iter_mut().find(|tasks| same(&tasks[0], &task)) {
+            Some(tasks) => tasks.push(task),
+            None => alike.push(vec![task]),
+        }
+    }
+    patches.extend(alike.into_iter().flat_map(|tasks| group_compact(tasks, diagonal, place)));
     patches
 }
 
@@ -46,7 +52,7 @@ pub(super) fn next_group(
     group.clear();
     let Some(&first) = left.first() else { return false };
     let place = |point: u32| place(&points.geometry[point as usize]);
-    let joins = |point: &u32| CoherenceLimit::close(diagonal).holds(place(first), place(*point));
+    let joins = |point: &u32| CoherenceLimit::of(diagonal).holds(place(first), place(*point));
     let count = left.iter().filter(|point| joins(point)).take(LANES).count();
     let count = if settings.shares(count) { count } else { 1 };
     left.retain(|&point| {
@@ -81,4 +87,40 @@ pub(super) fn anchors(points: &ShadingPoints, patch: &[ShadingTask]) -> Vec<bool
 
 fn place(point: &PointGeometry) -> OrientedPoint {
     OrientedPoint { position: point.position, normal: point.normal }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::eye::PointSurface;
+    use crate::lightcut::fixtures::all_materials;
+    use base::sampling::{owen_sobol_2d, uniform_sphere};
+    use glam::Vec2;
+    use scene::MaterialId;
+    use world::material::Materials;
+
+    #[test]
+    fn remnants_make_full_patches_of_equal_lobes() {
+        let scene = all_materials();
+        let materials = Materials::new(&scene);
+        let bsdfs = [0, 2, 4].map(|material| materials.at(MaterialId(material), Vec2::ZERO));
+        let mut points = ShadingPoints::default();
+        for i in 0..500 {
+            let (position, normal) = (owen_sobol_2d(i, 3).extend(0.0), uniform_sphere(owen_sobol_2d(i, 5)));
+            points.geometry.push(PointGeometry { position, spacing: 0.01, normal, coat: 0 });
+            let bsdf = bsdfs[usize::from(i % 5 == 0) + usize::from(i % 10 == 0)];
+            points.surfaces.push(PointSurface { bsdf, geometric_normal: normal, out: normal });
+        }
+        let tasks: Vec<ShadingTask> = (0..500).map(ShadingTask::all).collect();
+        let patches = patches(&points, &tasks, 1, 1.0);
+        let lobes = |task: &ShadingTask| &points.surfaces[task.point as usize].bsdf;
+        for patch in &patches {
+            assert!(patch.iter().all(|task| lobes(task).same_lobes(lobes(&patch[0]))));
+        }
+        let mut all: Vec<u32> = patches.iter().flatten().map(|task| task.point).collect();
+        all.sort_unstable();
+        assert!(all.into_iter().eq(0..500));
+        // 400, 50 and 50 points have equal lobes.
+        assert_eq!(patches.len(), 25 + 4 + 4);
+    }
 }
