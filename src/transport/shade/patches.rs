@@ -109,13 +109,13 @@ mod tests {
             let (position, normal) = (owen_sobol_2d(i, 3).extend(0.0), uniform_sphere(owen_sobol_2d(i, 5)));
             points.geometry.push(PointGeometry { position, spacing: 0.01, normal, coat: 0 });
             let bsdf = bsdfs[usize::from(i % 5 == 0) + usize::from(i % 10 == 0)];
-            points.surfaces.push(PointSurface { bsdf, geometric_normal: normal, out: normal });
+            points.surfaces.push(&PointSurface { bsdf, geometric_normal: normal, out: normal });
         }
         let tasks: Vec<ShadingTask> = (0..500).map(ShadingTask::all).collect();
         let patches = patches(&points, &tasks, 1, 1.0);
-        let lobes = |task: &ShadingTask| &points.surfaces[task.point as usize].bsdf;
+        let lobes = |task: &ShadingTask| points.surfaces.get(task.point as usize).bsdf;
         for patch in &patches {
-            assert!(patch.iter().all(|task| lobes(task).same_lobes(lobes(&patch[0]))));
+            assert!(patch.iter().all(|task| lobes(task).same_lobes(&lobes(&patch[0]))));
         }
         let mut all: Vec<u32> = patches.iter().flatten().map(|task| task.point).collect();
         all.sort_unstable();
