@@ -6,7 +6,7 @@ use crate::material::{Bsdf, Bsdfs16, MeanBsdf};
 use base::math::{Cone, F32x16, Frame, LANES, Rgb, U32x16, Vec2x16, Vec3x16, lanes_in, mask_of};
 use embree::Hits16;
 use glam::Vec2;
-use scene::{AttributeId, interpolated};
+use scene::AttributeId;
 
 /// Surfaces hit by sixteen rays; see [`Surface`] for the fields.
 #[derive(Clone, Debug, Default)]
@@ -68,23 +68,15 @@ impl World {
             Surfaces16 { mesh: hits.geometry, triangle: hits.primitive, t: hits.t, ..Default::default() };
         s.barycentric = Vec2x16 { x: hits.u, y: hits.v };
         let (mut corner, mut edges) = (Vec3x16::default(), [Vec3x16::default(); 2]);
-        // Short loops, so that many lanes wait for memory at once.
-        let mut vertices = [[0; 3]; LANES];
         for i in 0..LANES {
             let triangle = self.triangles.get(s.mesh[i], s.triangle[i]);
             corner.set(i, triangle.corner);
             edges[0].set(i, triangle.edges[0]);
             edges[1].set(i, triangle.edges[1]);
             s.normal.set(i, triangle.normal);
-            vertices[i] = triangle.vertices;
-        }
-        let mut normals = [None; LANES];
-        for i in 0..LANES {
-            normals[i] = self.mesh(s.mesh[i]).corner_normals(&vertices[i]);
-        }
-        for i in 0..LANES {
-            let shading = normals[i].map(|normals| interpolated(normals, s.barycentric.get(i)));
-            s.shading_normal.set(i, shading.unwrap_or(s.normal.get(i)));
+            let mesh = self.mesh(s.mesh[i]);
+            let shading = mesh.normal(&triangle.vertices, s.barycentric.get(i)).unwrap_or(triangle.normal);
+            s.shading_normal.set(i, shading);
         }
         if self.instances.is_some() {
             self.place_lanes(&mut s, &mut corner, &mut edges);
