@@ -22,6 +22,7 @@ mod lit_scene;
 pub mod machine;
 mod measure;
 mod plot;
+mod prices;
 mod race;
 mod report;
 mod shadow;
@@ -35,7 +36,7 @@ pub use benchmark::{Benchmark, Context, Kind, Scenes, Settings};
 pub use report::{Report, Row, Spread, Table};
 
 /// All benchmarks.
-pub const REGISTRY: [Benchmark; 12] = [
+pub const REGISTRY: [Benchmark; 13] = [
     table1::BENCHMARK,
     trade::BENCHMARK,
     race::BENCHMARK,
@@ -48,6 +49,7 @@ pub const REGISTRY: [Benchmark; 12] = [
     bsdf::BENCHMARK,
     hsh::BENCHMARK,
     budget::BENCHMARK,
+    prices::BENCHMARK,
 ];
 
 /// Finds a benchmark by its name.

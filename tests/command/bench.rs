@@ -9,8 +9,8 @@ const SCENES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes");
 fn every_benchmark_runs_and_exports() {
     let sandbox = Sandbox::new();
     let room = Some("room.xml");
-    for (name, scene) in [("shadow", room), ("bounds", room), ("budget", room), ("bsdf", None), ("hsh", None)]
-    {
+    let of_scenes = ["shadow", "bounds", "budget", "prices"].map(|name| (name, room));
+    for (name, scene) in of_scenes.into_iter().chain([("bsdf", None), ("hsh", None)]) {
         let mut arguments = vec!["bench", name];
         arguments.extend(scene);
         arguments.extend(["--repeats", "2", "--seconds", "0", "--threads", "2"]);
