@@ -54,6 +54,12 @@ impl<'w> PointSurfaces<'w> {
         self.packed[point].geometric_normal
     }
 
+    /// Returns the number of the list of lobes that a point's material has.
+    #[inline]
+    pub fn lobe_list(&self, point: usize) -> u32 {
+        self.packed[point].bsdf.lobe_list()
+    }
+
     /// Maps all surfaces, on all threads.
     pub fn map<T: Send>(&self, value: impl Fn(&PointSurface<'w>) -> T + Sync) -> Vec<T> {
         (0..self.packed.len()).into_par_iter().map(|point| value(&self.get(point))).collect()

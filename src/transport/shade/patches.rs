@@ -4,6 +4,7 @@ use super::{ShadeSettings, ShadingTask};
 use crate::eye::{PointGeometry, ShadingPoints};
 use crate::lightcut::{CoherenceLimit, OrientedPoint, group_coherent, group_compact};
 use base::math::{Frame, LANES};
+use std::collections::HashMap;
 
 /// Minimum number of points of a patch. In smaller patches too few points are interpolated to repay the sixteen
 /// anchors.
@@ -19,22 +20,22 @@ pub fn patches(
 ) -> Vec<Vec<ShadingTask>> {
     let max_size = (points.len() / count.max(1) as usize).max(MIN_PATCH);
     let place = |task: &ShadingTask| place(&points.geometry[task.point as usize]);
-    let bsdf = |task: &ShadingTask| points.surfaces.get(task.point as usize).bsdf;
-    let same = |a: &ShadingTask, b: &ShadingTask| {
-        a.lobe_only == b.lobe_only && a.origin == b.origin && bsdf(a).same_lobes(&bsdf(b))
-    };
+    let kind =
+        |task: &ShadingTask| (task.lobe_only, task.origin, points.surfaces.lobe_list(task.point as usize));
+    let same = |a: &ShadingTask, b: &ShadingTask| kind(a) == kind(b);
     let all = tasks.iter().copied();
     let patches = group_coherent(CoherenceLimit::of(diagonal), all, max_size, place, same);
     // A cut costs nearly as much for few points as for sixteen, so remnants are grouped again, into full groups. All
     // their points are anchors: they are far apart, and light that reaches one of them need not reach its neighbours.
     let (mut patches, remnants): (Vec<_>, Vec<_>) =
         patches.into_iter().partition(|patch| patch.len() >= MIN_PATCH);
-    let mut alike: Vec<Vec<ShadingTask>> = Vec::new();
+    let (mut alike, mut places) = (Vec::<Vec<ShadingTask>>::new(), HashMap::new());
     for task in remnants.into_iter().flatten() {
-        match alike.iter_mut().find(|tasks| same(&tasks[0], &task)) {
-            Some(tasks) => tasks.push(task),
-            None => alike.push(vec![task]),
+        let place = *places.entry(kind(&task)).or_insert(alike.len());
+        if place == alike.len() {
+            alike.push(Vec::new());
         }
+        alike[place].push(task);
     }
     patches.extend(alike.into_iter().flat_map(|tasks| group_compact(tasks, diagonal, place)));
     patches

@@ -35,6 +35,12 @@ impl<'m> PackedBsdf<'m> {
         Bsdf { model: self.model, base: self.base, scales }
     }
 
+    /// Returns the number of its list of lobes. Materials with the same number differ in factors only.
+    #[inline]
+    pub fn lobe_list(&self) -> u32 {
+        self.model.lobe_list
+    }
+
     /// Returns the packed material for an array with `more` factors before its own.
     #[inline]
     pub fn behind(self, more: usize) -> PackedBsdf<'m> {
