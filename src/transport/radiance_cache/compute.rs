@@ -163,28 +163,29 @@ impl<'w> RecordWorkspace<'w> {
         (records, self.cut.counts)
     }
 
-    /// Gathers the light at the points of `group` by one cut.
+    /// Gathers the light at the points of `group` by one cut. Threads that have no group help with the probe rays and
+    /// sums.
     fn gather(&mut self, s: &LightcutSource, group: &[Candidate]) -> Vec<GatheredLight> {
+        let RecordWorkspace { shadows, cut, points: receivers, series, arriving } = self;
         let (world, transfer) = (s.context.world, &s.context.transfer);
-        self.points.set(group.iter().map(Candidate::receiver));
+        receivers.set(group.iter().map(Candidate::receiver));
+        let receivers = &*receivers;
         let settings = CutSettings { origin: group[0].missing.only(), ..s.settings.cut };
         let log = s.needs_occluders().then(|| OccluderLog::new(world));
-        let cut = match &log {
-            Some(log) => self.cut.gather(transfer, log, &self.points, &settings),
-            None => self.cut.gather(transfer, &self.shadows, &self.points, &settings),
+        let places: Vec<_> = group.iter().map(|candidate| (candidate.point, candidate.sample)).collect();
+        let (cut, mut hessians) = match &log {
+            Some(log) => (cut.gather(transfer, log, receivers, &settings), Vec::new()),
+            None => rayon::join(
+                move || cut.gather(transfer, &*shadows, receivers, &settings),
+                || OcclusionHessian::at_points(world, &places, s.settings.probe_rays),
+            ),
         };
         let clamps = Clamps::new(&s.context.compensation, &cut.sum.limits, group);
         let points = RecordPoints::new(group, &world.materials);
-        let lit = LitCut::new(transfer, cut.clusters, &points, &clamps, &mut self.arriving);
-        let mut layers = lit.layers(&points);
+        let lit = LitCut::new(transfer, cut.clusters, &points, &clamps, arriving);
+        let mut layers = lit.layers(&points, &mut hessians);
         if let Some(log) = log {
-            lit.add_hidden(&log.sorted(), &self.points, &clamps, &mut layers);
-        }
-        let mut hessians = Vec::new();
-        if !s.needs_occluders() {
-            let places: Vec<_> = group.iter().map(|candidate| (candidate.point, candidate.sample)).collect();
-            hessians = OcclusionHessian::at_points(world, &places, s.settings.probe_rays);
-            lit.add_to_hessians(&layers, &mut hessians);
+            lit.add_hidden(&log.sorted(), receivers, &clamps, &mut layers);
         }
         let mut hessians = hessians.into_iter();
         let mut light = Vec::with_capacity(group.len());
@@ -192,7 +193,7 @@ impl<'w> RecordWorkspace<'w> {
             let clusters = cut.clusters.len() as u32;
             let layer = |layer: &GatheredLayer16| layer.layer(&points, lane, clusters, clamps.bound(lane));
             let layers = layers.as_ref().map(layer);
-            let series = lit.series(&mut self.series, candidate, lane);
+            let series = lit.series(series, candidate, lane);
             light.push(GatheredLight { layers, series, hessian: hessians.next() });
         }
         light

@@ -17,8 +17,9 @@ use crate::lightcut::CutCounts;
 use crate::lights::{DirectIndirect, Origin};
 use base::progress::Control;
 use base::stats::{Stage, Stats};
+use std::f32::consts::PI;
 
-/// Index level of the coarsest cells that get candidates.
+/// Minimum index level of cells that get candidates.
 const FIRST_LEVEL: u32 = 5;
 
 /// Records as they light the eye samples of one frame.
@@ -76,9 +77,10 @@ impl<'a> CacheFrame<'a> {
         stats: &mut Stats,
     ) {
         let count = self.targets.points.len();
-        let mut level = FIRST_LEVEL;
         let (reach, least_lacking) = (source.settings().farthest(), source.settings().least_lacking);
-        while count >> level >= source.settings().least_cell.max(1) as usize {
+        let least_cell = source.settings().least_cell.max(1) as usize;
+        let mut level = first_level(count, least_cell, reach);
+        while count >> level >= least_cell {
             for parity in 0..2 {
                 if control.is_cancelled() {
                     return;
@@ -146,6 +148,15 @@ impl<'a> CacheFrame<'a> {
     }
 }
 
+/// Returns the level of the coarsest cells that get candidates: the first whose cells are no larger than half the
+/// largest footprint, or the last with at least `least_cell` samples. `reach` is the largest radius in spacings. A
+/// record covers a small part of a larger cell, and saves no record of smaller cells.
+fn first_level(count: usize, least_cell: usize, reach: f32) -> u32 {
+    let largest = ((0.5 * PI * reach * reach) as usize).max(least_cell);
+    let too_large = |level: u32| count >> level > largest && count >> (level + 1) >= least_cell;
+    (FIRST_LEVEL..usize::BITS - 1).find(|&level| !too_large(level)).unwrap_or(FIRST_LEVEL)
+}
+
 /// Reports means over the records of a layer: clusters or rays, anisotropy, and accuracy. Accuracy is the radius of
 /// the circle of equal area over the distance of the geometry that sends or blocks light.
 fn shapes(records: &[Record], layer: &str, stats: &mut Stats) {
@@ -159,4 +170,20 @@ fn shapes(records: &[Record], layer: &str, stats: &mut Stats) {
     mean("cut or rays", &|r| r.diagnostics.cut as f32);
     mean("anisotropy", &|r| r.footprint.max_radius() / r.footprint.radii[0].min(r.footprint.radii[1]));
     mean("accuracy", &|r| (r.footprint.radii[0] * r.footprint.radii[1]).sqrt() / r.diagnostics.distance);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_coarsest_cells_are_half_the_largest_footprint_or_the_smallest_that_get_records() {
+        // Half of a circle of 40 spacings has 2513 samples, of 20 spacings 628.
+        assert_eq!(first_level(512 * 512, 256, 40.0), 7);
+        assert_eq!(first_level(2048 * 2048, 256, 40.0), 11);
+        assert_eq!(first_level(512 * 512, 256, 20.0), 9);
+        assert_eq!(first_level(512 * 512, 256, 1.0), 10);
+        assert_eq!(first_level(512 * 512, 4096, 40.0), 6);
+        assert_eq!([first_level(0, 1, 40.0), first_level(5000, 256, 40.0)], [FIRST_LEVEL; 2]);
+    }
 }

@@ -14,6 +14,10 @@ use crate::hsh::Radiance;
 use crate::lightcut::{PacketCluster, ReceiverPacket, Transfer};
 use crate::lights::{DirectIndirect, Origin};
 use base::math::{Rgb, lanes_in, luminance};
+use rayon::prelude::*;
+
+/// Minimum number of clusters whose light a thread computes at once.
+const MIN_CLUSTERS: usize = 32;
 
 /// Clusters of a cut with their light at the points of records.
 pub struct LitCut<'a> {
@@ -32,11 +36,11 @@ impl<'a> LitCut<'a> {
         clamps: &Clamps,
         arriving: &'a mut Vec<Arriving16>,
     ) -> LitCut<'a> {
-        arriving.clear();
-        arriving.extend(clusters.iter().map(|PacketCluster { node, responses }| {
+        let light = |PacketCluster { node, responses }: &PacketCluster| {
             let cluster = LitCluster::new(transfer, *node);
             points.arriving(&cluster, responses, cluster.retained(clamps, responses))
-        }));
+        };
+        clusters.par_iter().with_min_len(MIN_CLUSTERS).map(light).collect_into_vec(arriving);
         LitCut { transfer, clusters, arriving }
     }
 
@@ -46,29 +50,32 @@ impl<'a> LitCut<'a> {
         clusters.zip(self.arriving)
     }
 
-    /// Sums the light of each layer.
-    pub fn layers(&self, points: &RecordPoints) -> DirectIndirect<GatheredLayer16> {
-        let mut layers = DirectIndirect::<GatheredLayer16>::default();
-        for (cluster, light) in self.lit() {
-            layers[cluster.node.origin()].add(points, &cluster, light);
+    /// Sums the light of each layer. Adds the light, and the second derivatives of the sums, to the hessians of the
+    /// points.
+    pub fn layers(
+        &self,
+        points: &RecordPoints,
+        hessians: &mut [OcclusionHessian],
+    ) -> DirectIndirect<GatheredLayer16> {
+        let (layers, ()) = rayon::join(
+            || {
+                let mut layers = DirectIndirect::<GatheredLayer16>::default();
+                for (cluster, light) in self.lit() {
+                    layers[cluster.node.origin()].add(points, &cluster, light);
+                }
+                layers
+            },
+            || {
+                for (cluster, light) in self.lit() {
+                    OcclusionHessian::add_arriving(hessians, cluster.node.origin(), light);
+                }
+            },
+        );
+        for (lane, hessian) in hessians.iter_mut().enumerate() {
+            let add = |origin| hessian.add_smooth(origin, layers[origin].second_derivatives(lane));
+            Origin::ALL.into_iter().for_each(add);
         }
         layers
-    }
-
-    /// Adds the light of the clusters, and the second derivatives of `layers`, to the hessians of the points.
-    pub fn add_to_hessians(
-        &self,
-        layers: &DirectIndirect<GatheredLayer16>,
-        hessians: &mut [OcclusionHessian],
-    ) {
-        for (cluster, light) in self.lit() {
-            OcclusionHessian::add_arriving(hessians, cluster.node.origin(), light);
-        }
-        for (lane, hessian) in hessians.iter_mut().enumerate() {
-            Origin::ALL
-                .into_iter()
-                .for_each(|origin| hessian.add_smooth(origin, layers[origin].second_derivatives(lane)));
-        }
     }
 
     /// Adds the clusters that are hidden from a point to the distances of `layers`. `points` are the receivers of the
