@@ -12,6 +12,8 @@ pub struct Candidate {
     pub sample: u32,
     /// Position and normals.
     pub point: SurfacePoint,
+    /// Approximate number of eye samples in the cell that it was chosen for.
+    pub cell: u32,
     /// Approximate distance to the next eye sample: the unit of footprint radii.
     pub spacing: f32,
     /// Distance to the nearest visible point that rises from the surface; infinite if there is none nearby.

@@ -170,7 +170,7 @@ impl<'w> RecordWorkspace<'w> {
         let (world, transfer) = (s.context.world, &s.context.transfer);
         receivers.set(group.iter().map(Candidate::receiver));
         let receivers = &*receivers;
-        let settings = CutSettings { origin: group[0].missing.only(), ..s.settings.cut };
+        let settings = CutSettings { origin: group[0].missing.only(), ..s.settings.cut_in(group[0].cell) };
         let log = s.needs_occluders().then(|| OccluderLog::new(world));
         let places: Vec<_> = group.iter().map(|candidate| (candidate.point, candidate.sample)).collect();
         let (cut, mut hessians) = match &log {

@@ -86,6 +86,7 @@ pub fn candidate(position: Vec3, normal: Vec3) -> Candidate {
     Candidate {
         sample: 0,
         point: SurfacePoint { position, normal, geometric_normal: normal },
+        cell: 256,
         spacing: 0.1,
         clearance: f32::INFINITY,
         coat: 0,

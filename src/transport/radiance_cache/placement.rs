@@ -75,6 +75,7 @@ pub fn candidates(
             let sample = range.filter(uncovered).min_by(|a, b| distance(a).total_cmp(&distance(b)))?;
             let mut candidate =
                 candidate(targets, splats, sample, missing(targets, splats, cached, sample, 0.0));
+            candidate.cell = (targets.points.len() >> level) as u32;
             // The footprint may reach beyond the cell.
             let up = level.min(BASELINE_LEVELS_UP);
             candidate.baseline_luminance +=
@@ -96,6 +97,7 @@ fn candidate(
     let cached = splats.as_ref().map(|splat| splat.sums[sample].mean().map_or(0.0, luminance));
     Candidate {
         sample: sample as u32,
+        cell: 0,
         point: SurfacePoint { position: point.position, normal: point.normal, geometric_normal },
         spacing: point.spacing,
         clearance: f32::INFINITY,

@@ -101,6 +101,10 @@ settings! {
         least_cell: u32 = 256 => [.at_least(1.0).scaled(&UP)];
         /// Minimum share of the eye samples in a cell that records must lack, for the cell to get a record.
         least_lacking: f32 = 0.0;
+        /// Minimum number of eye samples in a cell whose record is exact. Records of smaller cells are loose.
+        exact_cell: u32 = 0;
+        /// Minimum error bound of a cluster in the cut of a loose record.
+        loose_epsilon: f32 = 0.0;
         /// Approximate number of patches of the eye samples without records. Sixteen samples of each share a cut,
         /// which is reconstructed at the others. The cost of cuts is proportional to it at any resolution.
         patches: u32 = 4096 => [is PATCHES];
@@ -125,6 +129,9 @@ const WALK_REACH: f32 = 2.0;
 /// Minimum share of the eye samples in a cell that must lack light, for the cell to get a record, in views of a list.
 const VIEWS_LACKING: f32 = 0.25;
 
+/// Approximate time of an exact record over the time of a loose one.
+const EXACT_OVER_LOOSE: f32 = 2.0;
+
 impl CacheSettings {
     /// Returns the settings for a frame of a walk-through, whose records later frames will use.
     pub fn for_walk(&self) -> CacheSettings {
@@ -140,14 +147,30 @@ impl CacheSettings {
     /// Returns the settings for a view of a list, which has the records of former views. `overlap` is the mean number
     /// of views that see a surface, over which the cost of a record is amortised.
     ///
+    /// Cells too small for the record of a still have a loose record: it takes the place of a few cuts of eye samples,
+    /// whose error bound is `epsilon`, and is as exact as they are.
+    ///
     /// Without overlap, a view is a still. A still gives a record to every cell that lacks light anywhere. If most of a
     /// cell has light already, the rest is mostly fine detail, which a record hardly covers.
-    pub fn for_views(&self, overlap: f32) -> CacheSettings {
+    pub fn for_views(&self, overlap: f32, epsilon: f32) -> CacheSettings {
         if overlap <= 1.0 {
             return *self;
         }
-        let least_cell = self.least_cell as f32 / overlap.clamp(1.0, WALK_FRAMES as f32);
-        CacheSettings { least_cell: (least_cell as u32).max(1), least_lacking: VIEWS_LACKING, ..*self }
+        let finer = 1.0 + EXACT_OVER_LOOSE * (overlap.min(WALK_FRAMES as f32) - 1.0);
+        let least_cell = (self.least_cell as f32 / finer) as u32;
+        CacheSettings {
+            least_cell: least_cell.max(1),
+            least_lacking: VIEWS_LACKING,
+            exact_cell: self.least_cell,
+            loose_epsilon: epsilon,
+            ..*self
+        }
+    }
+
+    /// Returns the settings of the cut of a record in a cell of so many eye samples.
+    pub fn cut_in(&self, cell: u32) -> CutSettings {
+        let least = if cell < self.exact_cell { self.loose_epsilon } else { 0.0 };
+        CutSettings { epsilon: self.cut.epsilon.max(least), ..self.cut }
     }
 
     /// Returns the maximum radius of any footprint, in spacings of eye samples.
@@ -200,10 +223,24 @@ mod tests {
     #[test]
     fn records_of_views_are_finer_the_more_views_overlap_and_views_alone_are_stills() {
         let still = CacheSettings::default();
-        assert_eq!(format!("{:?}", still.for_views(1.0)), format!("{still:?}"));
-        let cells = [1.5, 2.0, 6.0, 8.0, 100.0].map(|overlap| still.for_views(overlap).least_cell);
+        let of = |still: CacheSettings, overlap| still.for_views(overlap, 0.05);
+        assert_eq!(format!("{:?}", of(still, 1.0)), format!("{still:?}"));
+        let cells = [1.5, 2.0, 6.0, 8.0, 100.0].map(|overlap| of(still, overlap).least_cell);
         assert!(cells[0] < still.least_cell && cells.is_sorted_by(|a, b| a >= b), "{cells:?}");
-        assert_eq!(cells[4], still.for_walk().least_cell);
-        assert!(CacheSettings { least_cell: 1, ..still }.for_views(9.0).least_cell >= 1);
+        assert_eq!(cells[3], cells[4]);
+        assert!(of(CacheSettings { least_cell: 1, ..still }, 9.0).least_cell >= 1);
+    }
+
+    #[test]
+    fn records_of_views_are_as_exact_as_a_still_in_its_cells_and_as_cuts_in_smaller_ones() {
+        let still = CacheSettings::default();
+        let epsilon = |settings: &CacheSettings, cell| settings.cut_in(cell).epsilon;
+        for cell in [1, still.least_cell - 1, still.least_cell, 100_000] {
+            assert_eq!(epsilon(&still, cell), still.cut.epsilon);
+            let expected = if cell < still.least_cell { 0.05 } else { still.cut.epsilon };
+            assert_eq!(epsilon(&still.for_views(4.0, 0.05), cell), expected);
+            // Cuts that are more exact than records leave records as they are.
+            assert_eq!(epsilon(&still.for_views(4.0, 1e-4), cell), still.cut.epsilon);
+        }
     }
 }

@@ -51,6 +51,7 @@ fn open_floor(samples: &EyePass) -> Vec<Candidate> {
         Candidate {
             sample: i as u32,
             point: SurfacePoint { position, normal, geometric_normal },
+            cell: 256,
             spacing: point.spacing,
             clearance: f32::INFINITY,
             coat: 0,

@@ -101,7 +101,7 @@ impl Settings {
         let FormerFrames { records, settled, thresholds, outlook } = former;
         if let Some(outlook) = outlook {
             let lit = LitSurfaces::Seen(&outlook.points);
-            let cache = self.record_settings().for_views(outlook.overlap);
+            let cache = self.record_settings().for_views(outlook.overlap, self.cut.epsilon);
             return FrameInputs { cache, kept: Some(records), lit, ..self.still(view) };
         }
         let cache = self.record_settings().for_walk();
