@@ -20,6 +20,7 @@ mod renderer;
 mod sampled_pixels;
 mod sampling;
 mod scale;
+mod shared_pilots;
 mod tally;
 
 pub use lights::LightStore;
