@@ -76,7 +76,7 @@ impl<'w> LitScene<'w> {
     /// Divides a stretch into groups of pixels that share a cut.
     pub fn groups(&self, stretch: &[usize]) -> Vec<Vec<usize>> {
         let limit = CoherenceLimit::of(self.world.diagonal);
-        group_coherent(limit, stretch.iter().copied(), LANES, |&sample| self.place(sample), |_, _| true)
+        group_coherent(limit, stretch.iter().copied(), LANES, |&sample| self.place(sample), |_| ())
     }
 
     /// Divides a stretch into groups of cache records that share a cut.

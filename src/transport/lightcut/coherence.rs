@@ -2,6 +2,7 @@
 
 use base::math::LANES;
 use glam::Vec3;
+use rayon::prelude::*;
 
 /// Minimum number of points that share a cut.
 pub const MIN_SHARED: usize = 4;
@@ -9,6 +10,9 @@ pub const MIN_SHARED: usize = 4;
 /// Weight of the difference of unit normals in [`group_compact`], relative to that of positions over the scene's
 /// diagonal.
 const NORMAL_WEIGHT: f32 = 0.01;
+
+/// Number of items up to which one thread forms compact groups.
+const PARALLEL: usize = 4096;
 
 /// Position and normal of a point on a surface.
 #[derive(Clone, Copy, Debug)]
@@ -50,24 +54,39 @@ impl CoherenceLimit {
     }
 }
 
+/// First item of a group under construction, and the group's size.
+struct Head<K> {
+    place: OrientedPoint,
+    kind: K,
+    size: usize,
+}
+
 /// Divides a list, in which neighbours in space are near each other, into groups of at most `max_size` items. Each item
-/// is coherent with the first item of its group, and `same` holds for the pair.
-pub fn group_coherent<T: Copy>(
+/// is coherent with the first item of its group, and has the same kind.
+pub fn group_coherent<T: Copy, K: PartialEq>(
     limit: CoherenceLimit,
     items: impl IntoIterator<Item = T>,
     max_size: usize,
     place: impl Fn(&T) -> OrientedPoint,
-    same: impl Fn(&T, &T) -> bool,
+    kind: impl Fn(&T) -> K,
 ) -> Vec<Vec<T>> {
     let mut groups: Vec<Vec<T>> = Vec::new();
+    // Heads are next to each other in memory: one thread compares all items with them.
+    let mut heads: Vec<Head<K>> = Vec::new();
     for item in items {
-        let open = groups.len().saturating_sub(OPEN);
-        let joins = |group: &&mut Vec<T>| {
-            group.len() < max_size && same(&group[0], &item) && limit.holds(place(&group[0]), place(&item))
-        };
-        match groups[open..].iter_mut().rev().find(joins) {
-            Some(group) => group.push(item),
-            None => groups.push(vec![item]),
+        let (place, kind) = (place(&item), kind(&item));
+        let open = heads.len().saturating_sub(OPEN);
+        let joins =
+            |head: &Head<K>| head.size < max_size && head.kind == kind && limit.holds(head.place, place);
+        match heads[open..].iter().rposition(joins) {
+            Some(found) => {
+                heads[open + found].size += 1;
+                groups[open + found].push(item);
+            }
+            None => {
+                heads.push(Head { place, kind, size: 1 });
+                groups.push(vec![item]);
+            }
         }
     }
     groups
@@ -75,33 +94,49 @@ pub fn group_coherent<T: Copy>(
 
 /// Divides a list into full and compact groups of up to sixteen items. The list is halved across its largest extent in
 /// position or normal, again and again.
-pub fn group_compact<T: Copy>(
-    mut items: Vec<T>,
+pub fn group_compact<T: Copy + Send>(
+    items: Vec<T>,
     diagonal: f32,
     place: impl Fn(&T) -> OrientedPoint,
 ) -> Vec<Vec<T>> {
-    let key = |item: &T, axis: usize| {
-        let OrientedPoint { position, normal } = place(item);
-        if axis < 3 { position[axis] } else { normal[axis - 3] * NORMAL_WEIGHT * diagonal }
-    };
-    let mut groups = Vec::new();
-    let mut parts = vec![&mut items[..]];
-    while let Some(part) = parts.pop() {
-        if part.len() <= LANES {
-            groups.extend((!part.is_empty()).then(|| part.to_vec()));
-            continue;
-        }
-        let extent = |axis: usize| {
-            let values = || part.iter().map(|item| key(item, axis));
-            values().fold(f32::NEG_INFINITY, f32::max) - values().fold(f32::INFINITY, f32::min)
-        };
-        let extents: [f32; 6] = std::array::from_fn(extent);
-        let widest = (0..6).max_by(|&a, &b| extents[a].total_cmp(&extents[b])).unwrap_or(0);
-        part.sort_by(|a, b| key(a, widest).total_cmp(&key(b, widest)));
-        let count = part.len().div_ceil(LANES);
-        let (left, right) = part.split_at_mut(part.len() * (count / 2) / count);
-        parts.extend([right, left]);
+    let mut placed: Vec<([f32; 6], T)> = Vec::with_capacity(items.len());
+    placed.extend(items.into_iter().map(|item| {
+        let OrientedPoint { position, normal } = place(&item);
+        let normal = normal.to_array().map(|x| x * NORMAL_WEIGHT * diagonal);
+        let [[x, y, z], [u, v, w]] = [position.to_array(), normal];
+        ([x, y, z, u, v, w], item)
+    }));
+    halve(&mut placed)
+}
+
+/// Divides items, given with their coordinates, into compact groups.
+fn halve<T: Copy + Send>(items: &mut [([f32; 6], T)]) -> Vec<Vec<T>> {
+    if items.len() <= LANES {
+        let all = || items.iter().map(|(_, item)| *item).collect();
+        return (!items.is_empty()).then(all).into_iter().collect();
     }
+    let mut bounds = [[f32::INFINITY, f32::NEG_INFINITY]; 6];
+    for (at, _) in &*items {
+        for ([low, high], x) in bounds.iter_mut().zip(at) {
+            (*low, *high) = (low.min(*x), high.max(*x));
+        }
+    }
+    let extents = bounds.map(|[low, high]| high - low);
+    let widest = (0..6).max_by(|&a, &b| extents[a].total_cmp(&extents[b])).unwrap_or(0);
+    let order = |a: &([f32; 6], T), b: &([f32; 6], T)| a.0[widest].total_cmp(&b.0[widest]);
+    let count = items.len().div_ceil(LANES);
+    let middle = items.len() * (count / 2) / count;
+    if items.len() <= PARALLEL {
+        items.sort_by(order);
+        let (left, right) = items.split_at_mut(middle);
+        let mut groups = halve(left);
+        groups.append(&mut halve(right));
+        return groups;
+    }
+    items.par_sort_by(order);
+    let (left, right) = items.split_at_mut(middle);
+    let (mut groups, mut others) = rayon::join(|| halve(left), || halve(right));
+    groups.append(&mut others);
     groups
 }
 

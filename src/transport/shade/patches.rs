@@ -22,20 +22,19 @@ pub fn patches(
     let place = |task: &ShadingTask| place(&points.geometry[task.point as usize]);
     let kind =
         |task: &ShadingTask| (task.lobe_only, task.origin, points.surfaces.lobe_list(task.point as usize));
-    let same = |a: &ShadingTask, b: &ShadingTask| kind(a) == kind(b);
     let all = tasks.iter().copied();
-    let patches = group_coherent(CoherenceLimit::of(diagonal), all, max_size, place, same);
+    let patches = group_coherent(CoherenceLimit::of(diagonal), all, max_size, place, kind);
     // A cut costs nearly as much for few points as for sixteen, so remnants are grouped again, into full groups. All
     // their points are anchors: they are far apart, and light that reaches one of them need not reach its neighbours.
     let (mut patches, remnants): (Vec<_>, Vec<_>) =
         patches.into_iter().partition(|patch| patch.len() >= MIN_PATCH);
     let (mut alike, mut places) = (Vec::<Vec<ShadingTask>>::new(), HashMap::new());
-    for task in remnants.into_iter().flatten() {
-        let place = *places.entry(kind(&task)).or_insert(alike.len());
+    for remnant in remnants {
+        let place = *places.entry(kind(&remnant[0])).or_insert(alike.len());
         if place == alike.len() {
             alike.push(Vec::new());
         }
-        alike[place].push(task);
+        alike[place].extend(remnant);
     }
     patches.extend(alike.into_iter().flat_map(|tasks| group_compact(tasks, diagonal, place)));
     patches
