@@ -13,6 +13,9 @@ use rayon::prelude::*;
 /// Number of index leaves interpolated at a time.
 const LEAVES: usize = 16384;
 
+/// Number of index leaves in a run, a divisor of [`LEAVES`].
+const RUN: usize = 32;
+
 /// Sum of weights up to which records do not light a sample: a single footprint reaches it, and it lies beyond 0.9 of
 /// the way to the edge. Such samples occur where a wall continues beyond the image frame, which hides it from the
 /// record's light.
@@ -43,20 +46,19 @@ pub struct Interpolated {
 }
 
 impl CacheFrame<'_> {
-    /// Maps the light of the records at every eye sample, in order. It is computed in blocks, since the light of all
-    /// samples would dominate the memory of large images.
+    /// Maps the light of the records by runs of eye samples, in order; `of_run` gets the samples of a run. Light is
+    /// computed in blocks of runs, since the light of all samples would dominate the memory of large images.
     pub fn interpolate<T: Send>(
         &self,
         records: &Records,
-        each: impl Fn(usize, Interpolated) -> T + Copy + Sync + Send,
-    ) -> impl Iterator<Item = T> {
+        of_run: impl Fn(&mut dyn Iterator<Item = (usize, Interpolated)>) -> T + Copy + Sync + Send,
+    ) -> impl Iterator<Item = Vec<T>> {
         let index = self.targets.index;
-        let of_leaf = move |leaf| -> Vec<T> {
-            index.leaf(leaf).map(|sample| each(sample, self.at_sample(records, leaf, sample))).collect()
-        };
-        (0..index.leaves()).step_by(LEAVES).flat_map(move |first| {
-            let leaves = first..(first + LEAVES).min(index.leaves());
-            leaves.into_par_iter().map(of_leaf).collect::<Vec<_>>().into_iter().flatten()
+        let of_leaf = move |leaf| index.leaf(leaf).map(move |s| (s, self.at_sample(records, leaf, s)));
+        (0..index.leaves()).step_by(LEAVES).map(move |first| {
+            let runs = (first..(first + LEAVES).min(index.leaves())).into_par_iter().step_by(RUN);
+            let leaves = |start: usize| start..(start + RUN).min(index.leaves());
+            runs.map(|start| of_run(&mut leaves(start).flat_map(of_leaf))).collect()
         })
     }
 
@@ -131,7 +133,11 @@ mod tests {
                 discontinuities: Vec::new(),
                 cuts: CutCounts::default(),
             };
-            let light: Vec<Interpolated> = frame.interpolate(&records, |_, light| light).collect();
+            let light: Vec<Interpolated> = frame
+                .interpolate(&records, |run| run.map(|(_, light)| light).collect::<Vec<_>>())
+                .flatten()
+                .flatten()
+                .collect();
             assert_eq!(light.len(), floor.points.len());
             for (point, light) in floor.points.geometry.iter().zip(light) {
                 let distance = point.position.distance(Vec3::new(0.5, 0.5, 0.0));

@@ -1,5 +1,6 @@
 //! Image under construction, and optionally its parts by the origin of light.
 
+use super::bands::{BANDS, BandedLight, Reflected, add_by_band};
 use super::{ShadeSettings, ShadedPatch, ShadingContext, ShadingCounts, ShadingTask, patches, shade};
 use crate::eye::EyePass;
 use crate::lights::Origin;
@@ -7,6 +8,7 @@ use base::film::{Image, Layer, Preview};
 use base::math::Rgb;
 use base::progress::Control;
 use base::stats::{Contributions, Stats};
+use rayon::prelude::*;
 
 /// Sums of radiance at each pixel.
 pub struct ShadedImage {
@@ -29,23 +31,22 @@ impl ShadedImage {
         ShadedImage { color, parts, nonfinite: eye.nonfinite, contributions: eye.contributions.clone() }
     }
 
-    /// Adds radiance that a shading point reflects, of one origin or of both.
-    pub fn add(&mut self, eye: &EyePass, point: usize, origin: Option<Origin>, radiance: Rgb) {
-        for seen in eye.visibility.of(point) {
-            let light = seen.weight * radiance;
-            if !light.is_finite() {
-                self.nonfinite += 1;
-                continue;
-            }
-            self.color.pixels[seen.pixel as usize] += light;
-            if let Some(parts) = &mut self.parts {
-                let part = match origin {
-                    Some(Origin::Direct) => 0,
-                    Some(Origin::Indirect) => 1,
-                    None => 2,
-                };
-                parts[part].pixels[seen.pixel as usize] += light;
-            }
+    /// Adds the light of shading points, run by run, as if one thread added all light in order. `reflected` maps the
+    /// items of runs.
+    pub fn add<T: Sync>(
+        &mut self,
+        eye: &EyePass,
+        runs: &[Vec<T>],
+        reflected: impl Fn(&T) -> Reflected + Sync,
+    ) {
+        let band = self.color.pixels.len().div_ceil(BANDS).max(1);
+        let banded = |run: &Vec<T>| BandedLight::new(eye, run.iter().map(&reflected), band);
+        let runs: Vec<BandedLight> = runs.par_iter().map(banded).collect();
+        self.nonfinite += runs.iter().map(|run| run.nonfinite).sum::<u64>();
+        add_by_band(&mut self.color, band, &runs, |_| true);
+        for (number, part) in self.parts.iter_mut().flatten().enumerate() {
+            let origin = [Some(Origin::Direct), Some(Origin::Indirect), None][number];
+            add_by_band(part, band, &runs, |light| light.origin == origin);
         }
     }
 
@@ -73,9 +74,11 @@ impl ShadedImage {
             }
         };
         let shading = shade(context, &eye.points, &patches, settings, control, show);
-        for &(task, radiance) in shading.patches.iter().flatten() {
-            self.add(eye, task.point as usize, task.origin, radiance);
-        }
+        self.add(eye, &shading.patches, |(task, radiance)| Reflected {
+            point: task.point,
+            origin: task.origin,
+            radiance: *radiance,
+        });
         shading.counts
     }
 

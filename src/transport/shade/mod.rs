@@ -7,6 +7,7 @@
 //! - [`shade`] shades all patches of a frame in parallel. A [`ShadedImage`] adds the radiance to the pixels that see
 //!   the points.
 
+mod bands;
 mod context;
 mod frame;
 mod gatherers;
@@ -14,6 +15,7 @@ mod image;
 mod patches;
 mod shader;
 
+pub use bands::Reflected;
 pub use context::{ShadeSettings, ShadingContext, ShadingTask};
 pub use frame::{ShadedPatch, shade};
 pub use gatherers::{Gatherers, Shaded};

@@ -2,35 +2,36 @@
 
 use base::math::Rgb;
 use transport::eye::EyePass;
-use transport::lights::{DirectIndirect, Origin};
+use transport::lights::Origin;
 use transport::radiance_cache::fill::CacheFrame;
 use transport::radiance_cache::resolve::{Interpolated, Remainder};
 use transport::radiance_cache::store::Records;
-use transport::shade::{ShadedImage, ShadingTask};
+use transport::shade::{Reflected, ShadedImage, ShadingTask};
 
-/// Light of records at a point, and what is left to do.
+/// Light of records at some points, and what is left to do.
+#[derive(Default)]
 struct Resolved {
-    base: DirectIndirect<Rgb>,
-    lobe: Rgb,
-    /// Origin of the light of `lobe`; `None` for both.
-    lobe_origin: Option<Origin>,
-    tasks: [Option<ShadingTask>; 2],
+    light: Vec<Reflected>,
+    tasks: Vec<ShadingTask>,
 }
 
 impl Resolved {
     /// Divides the light of a point.
-    fn new(point: usize, light: &Interpolated) -> Resolved {
+    fn add(&mut self, point: usize, light: &Interpolated) {
         let &Interpolated { base, lobe, baseline_luminance, remainder } = light;
-        let task = |(part, lobe_only)| {
+        let lobe_origin = remainder.map(|part| part != Remainder::All).only();
+        let parts = Origin::ALL.map(|origin| (Some(origin), base[origin]));
+        for (origin, radiance) in parts.into_iter().chain([(lobe_origin, lobe)]) {
+            if radiance != Rgb::ZERO {
+                self.light.push(Reflected { point: point as u32, origin, radiance });
+            }
+        }
+        for (part, lobe_only) in [(Remainder::All, false), (Remainder::Lobe, true)] {
             let remaining = remainder.map(|remainder| remainder == part);
-            let (point, origin) = (point as u32, remaining.only());
-            remaining.any().then_some(ShadingTask { point, lobe_only, origin, baseline_luminance })
-        };
-        Resolved {
-            base,
-            lobe,
-            lobe_origin: remainder.map(|part| part != Remainder::All).only(),
-            tasks: [(Remainder::All, false), (Remainder::Lobe, true)].map(task),
+            if remaining.any() {
+                let (point, origin) = (point as u32, remaining.only());
+                self.tasks.push(ShadingTask { point, lobe_only, origin, baseline_luminance });
+            }
         }
     }
 }
@@ -45,23 +46,22 @@ pub fn resolve(
     samples_direct: bool,
     image: &mut ShadedImage,
 ) -> Vec<ShadingTask> {
-    let each = |point: usize, mut light: Interpolated| {
-        if samples_direct {
-            light.remainder.direct = Remainder::Nothing;
-            light.baseline_luminance += eye.known_luminance(point);
+    let of_run = |points: &mut dyn Iterator<Item = (usize, Interpolated)>| {
+        let mut resolved = Resolved::default();
+        for (point, mut light) in points {
+            if samples_direct {
+                light.remainder.direct = Remainder::Nothing;
+                light.baseline_luminance += eye.known_luminance(point);
+            }
+            resolved.add(point, &light);
         }
-        Resolved::new(point, &light)
+        resolved
     };
     let mut tasks = Vec::new();
-    for (point, light) in frame.interpolate(records, each).enumerate() {
-        let parts = Origin::ALL.map(|origin| (Some(origin), light.base[origin]));
-        for (origin, radiance) in parts.into_iter().chain([(light.lobe_origin, light.lobe)]) {
-            // One thread adds all light, in order.
-            if radiance != Rgb::ZERO {
-                image.add(eye, point, origin, radiance);
-            }
-        }
-        tasks.extend(light.tasks.into_iter().flatten());
+    for runs in frame.interpolate(records, of_run) {
+        let (light, found): (Vec<_>, Vec<_>) = runs.into_iter().map(|run| (run.light, run.tasks)).unzip();
+        image.add(eye, &light, |light| *light);
+        tasks.extend(found.into_iter().flatten());
     }
     tasks
 }

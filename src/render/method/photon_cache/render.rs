@@ -34,7 +34,7 @@ use transport::radiance_cache::source::LightcutSource;
 use transport::radiance_cache::store::Records;
 use transport::radiance_cache::targets::Targets;
 use transport::radiance_cache::{CacheSettings, DirectBy, MAX_CUT};
-use transport::shade::{ShadeSettings, ShadedImage, ShadingContext, ShadingCounts, ShadingTask};
+use transport::shade::{Reflected, ShadeSettings, ShadedImage, ShadingContext, ShadingCounts, ShadingTask};
 use world::World;
 use world::view::View;
 
@@ -121,10 +121,12 @@ impl Settings {
         let counts = image.shade(&source.direct.context, eye, &direct, patches, &shading, control);
         image.came_by("cuts");
         let mut rays = *source.counts();
+        let mut light = Vec::with_capacity(indirect.len());
         for (task, (radiance, used)) in indirect.iter().zip(self.gathers(source, eye, &indirect, control)) {
-            image.add(eye, task.point as usize, Some(Origin::Indirect), radiance);
+            light.push(Reflected { point: task.point, origin: Some(Origin::Indirect), radiance });
             rays += used;
         }
+        image.add(eye, &[light], |light| *light);
         image.came_by("gathering");
         ShadedTasks { direct: direct.len() as u64, indirect: indirect.len() as u64, counts, rays }
     }
