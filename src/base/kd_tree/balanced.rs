@@ -54,21 +54,21 @@ pub struct KdTree {
 impl KdTree {
     /// Returns the tree over no points.
     pub fn empty() -> KdTree {
-        KdTree::build([].into_iter()).0
+        KdTree::build(rayon::iter::empty()).0
     }
 
     /// Builds the tree over `positions`; returns it with the order in which to store the items.
-    pub fn build(positions: impl ExactSizeIterator<Item = Vec3>) -> (KdTree, Vec<u32>) {
+    pub fn build(positions: impl IndexedParallelIterator<Item = Vec3>) -> (KdTree, Vec<u32>) {
         KdTree::build_unless_cancelled(positions, &Control::new())
     }
 
     /// Builds the tree like [`KdTree::build`] unless `control` is cancelled. Boxes are then still correct, but the
     /// order is arbitrary and boxes are large.
     pub fn build_unless_cancelled(
-        positions: impl ExactSizeIterator<Item = Vec3>,
+        positions: impl IndexedParallelIterator<Item = Vec3>,
         control: &Control,
     ) -> (KdTree, Vec<u32>) {
-        let mut items: Vec<(Vec3, u32)> = positions.zip(0..).collect();
+        let mut items: Vec<(Vec3, u32)> = positions.enumerate().map(|(i, at)| (at, i as u32)).collect();
         let count = items.len();
         let mut depth = 0;
         while count >> depth > LEAF {
@@ -84,7 +84,7 @@ impl KdTree {
         for node in (1..1usize << depth).rev() {
             index.bounds[node] = index.bounds[2 * node].union(index.bounds[2 * node + 1]);
         }
-        (index, items.into_iter().map(|item| item.1).collect())
+        (index, items.par_iter().map(|item| item.1).collect())
     }
 
     /// Returns the level of the leaves; the root is level 0.
@@ -155,8 +155,11 @@ fn sort(items: &mut [(Vec3, u32)], count: usize, level: u32, i: usize, depth: u3
         2
     };
     let middle = range(count, level + 1, 2 * i + 1).start - range(count, level, i).start;
-    // Equal coordinates are ordered by index, so the order is the same on every run.
-    items.select_nth_unstable_by(middle, |a, b| a.0[axis].total_cmp(&b.0[axis]).then(a.1.cmp(&b.1)));
+    match axis {
+        0 => items.select_nth_unstable_by_key(middle, |item| key(item.0.x, item.1)),
+        1 => items.select_nth_unstable_by_key(middle, |item| key(item.0.y, item.1)),
+        _ => items.select_nth_unstable_by_key(middle, |item| key(item.0.z, item.1)),
+    };
     let (left, right) = items.split_at_mut(middle);
     let mut halves = [(left, 2 * i), (right, 2 * i + 1)];
     if count >> level > PARALLEL {
@@ -164,6 +167,16 @@ fn sort(items: &mut [(Vec3, u32)], count: usize, level: u32, i: usize, depth: u3
     } else {
         halves.iter_mut().for_each(|(half, i)| sort(half, count, level + 1, *i, depth, control));
     }
+}
+
+/// Returns a number in the total order of the coordinate `x`. Equal coordinates are ordered by index, so that the order
+/// is unique.
+#[inline]
+fn key(x: f32, index: u32) -> u64 {
+    let bits = x.to_bits();
+    // Negative numbers are in reverse order, before all others.
+    let ordered = if bits >> 31 == 0 { bits | 1 << 31 } else { !bits };
+    u64::from(ordered) << 32 | u64::from(index)
 }
 
 #[cfg(test)]
@@ -184,7 +197,7 @@ mod tests {
     fn leaves_share_out_all_points_and_queries_miss_none() {
         for n in [0u32, 1, 2, 31, 32, 33, 1000, 20_000] {
             let points = points(n);
-            let (index, order) = KdTree::build(points.iter().copied());
+            let (index, order) = KdTree::build(points.par_iter().copied());
             let mut sorted = order.clone();
             sorted.sort();
             assert!(sorted.into_iter().eq(0..n));
@@ -203,8 +216,16 @@ mod tests {
     }
 
     #[test]
+    fn keys_are_in_the_total_order() {
+        let numbers = [f32::NEG_INFINITY, -2.0, -1.0, -1e-40, -0.0, 0.0, 1e-40, 1.0, 2.0, f32::INFINITY];
+        let numbers = [-f32::NAN].into_iter().chain(numbers).chain([f32::NAN]);
+        let keys: Vec<u64> = numbers.flat_map(|x| [0, 7, u32::MAX].map(|index| key(x, index))).collect();
+        assert!(keys.windows(2).all(|pair| pair[0] < pair[1]), "{keys:x?}");
+    }
+
+    #[test]
     fn coinciding_points_are_no_trouble() {
-        let (index, order) = KdTree::build(vec![Vec3::ONE; 500].into_iter());
+        let (index, order) = KdTree::build(vec![Vec3::ONE; 500].into_par_iter());
         assert_eq!(order.len(), 500);
         let mut found = 0;
         index.leaves_near(Vec3::ONE, 0.0, |leaf| found += index.leaf(leaf).len());

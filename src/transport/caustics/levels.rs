@@ -6,6 +6,7 @@ use base::kd_tree::{KdTree, WideKdTree};
 use base::math::{LANES, Vec3x16, lanes_in, mask_of};
 use base::sampling::hash;
 use glam::Vec3;
+use rayon::prelude::*;
 use std::f32::consts::PI;
 
 /// Number of levels. Discs are twice as wide from level to level.
@@ -55,7 +56,7 @@ fn scale(level: usize) -> f32 {
 
 impl DiscLevel {
     fn new(photons: &[CausticPhoton], scale: f32) -> DiscLevel {
-        let (index, order) = KdTree::build(photons.iter().map(|photon| photon.position));
+        let (index, order) = KdTree::build(photons.par_iter().map(|photon| photon.position));
         let photons: Vec<CausticPhoton> = order.iter().map(|i| photons[*i as usize]).collect();
         let positions: Vec<Vec3> = photons.iter().map(|photon| photon.position).collect();
         let tree = WideKdTree::new(&index, &positions);

@@ -34,6 +34,7 @@ use base::progress::Control;
 use glam::Vec3;
 use levels::DiscLevel;
 use photons::{CausticPhoton, CausticTracer, PilotYield};
+use rayon::prelude::*;
 use std::f32::consts::PI;
 use world::material::Bsdf;
 use world::{Surface, World};
@@ -131,7 +132,7 @@ impl PilotPaths {
         let tracer = CausticTracer::new(world, &emitter, self.seed, self.max_edges, control);
         let traced = tracer.photons(found, count.factor());
         (all.paths, all.rays) = (traced.paths, traced.rays);
-        let (index, order) = KdTree::build(traced.photons.iter().map(|photon| photon.position));
+        let (index, order) = KdTree::build(traced.photons.par_iter().map(|photon| photon.position));
         all.photons = order.iter().map(|i| traced.photons[*i as usize]).collect();
         for leaf in 0..index.leaves() {
             let leaf = &mut all.photons[index.leaf(leaf)];

@@ -11,11 +11,10 @@
 //! [`extra`]: super::extra
 //! [`learn`]: super::learn
 
-use super::adaptive::MULTIPLES;
 use super::effort::SampledSquares;
 use super::guides::Guide;
 use super::merge::{MergedPoint, MergedPoints, merge};
-use super::needs::Needs;
+use super::more::TilePart;
 use super::points::VisibilitySample;
 use super::tracer::{BATCH, SampledTile, Tracer, TracerWorkspace};
 use super::{EyeCounts, EyePass, EyeSettings, LightSources, TILE, VisibleSurfaces};
@@ -75,9 +74,13 @@ impl<'w> EyePass<'w> {
         let tiles = (0..view.window.tile_count(TILE)).into_par_iter().one_by_one();
         let tiles: Vec<SampledTile> = tiles.map(first).flatten().collect();
         let needs = effort.as_ref().and_then(|effort| tracer.needs(effort, &tiles, learned));
-        let more = |tile| works.with(|work| tracer.more_samples(tile, needs.as_ref(), work));
-        let tiles = tiles.into_par_iter().one_by_one().map(more).collect();
-        let mut pass = EyePass::gather(&view.window, tiles, 1, control);
+        let all_traced = tiles.len() == view.window.tile_count(TILE);
+        let parts = |tile| tracer.tile_parts(tile, needs.as_ref());
+        let parts: Vec<Vec<TilePart>> = tiles.into_par_iter().one_by_one().map(parts).collect();
+        let parts: Vec<TilePart> = parts.into_iter().flatten().collect();
+        let more = |part| works.with(|work| tracer.more_samples(part, work));
+        let found = parts.into_par_iter().one_by_one().map(more).collect();
+        let mut pass = EyePass::gather(&view.window, found, 1, all_traced, control);
         if is_own {
             pass.chains += pilots.chains;
         }
@@ -104,7 +107,7 @@ pub fn merged_points(spp: u32) -> u64 {
 
 impl<'w> VisibleSurfaces<'w> {
     /// Adds the shading points that `samples` samples of a pixel have found.
-    fn add(&mut self, pixel: u32, points: &[MergedPoint<'w>], samples: u32) {
+    pub(super) fn add(&mut self, pixel: u32, points: &[MergedPoint<'w>], samples: u32) {
         for point in points {
             self.points.geometry.push(point.geometry);
             self.points.surfaces.push(&point.surface);
@@ -160,73 +163,8 @@ impl<'w> Tracer<'_, 'w> {
         tile
     }
 
-    /// Takes more samples of the pixels of a tile that need them, and merges all samples.
-    fn more_samples(
-        &self,
-        mut tile: SampledTile<'w>,
-        needs: Option<&Needs>,
-        work: &mut TracerWorkspace<'_, 'w>,
-    ) -> VisibleSurfaces<'w> {
-        let EyeSettings { spp, seed, .. } = self.settings;
-        let window = &self.view.window;
-        let mut found =
-            VisibleSurfaces { chains: tile.chains, nonfinite: tile.nonfinite, ..Default::default() };
-        let film_pixels: Vec<[u32; 2]> = tile.pixels.iter().map(|pixel| window.film_pixel(*pixel)).collect();
-        let cancelled = self.control.is_cancelled();
-        let multiples = self.multiples(&film_pixels, &tile.samples, needs.filter(|_| !cancelled));
-        let of_window = |[x, y]: [u32; 2]| y * window.width + x;
-        let first_points =
-            |i: usize| tile.ranges[i].clone().map(|point| tile.points.get(point)).collect::<Vec<_>>();
-        for multiple in [0].into_iter().chain(MULTIPLES) {
-            let chosen: Vec<usize> = (0..multiples.len()).filter(|i| multiples[*i] == multiple).collect();
-            if multiple == 0 {
-                // Points that will not be lit are left out.
-                let lit = if cancelled { &[] } else { &chosen[..] };
-                lit.iter().for_each(|i| {
-                    let pixel = of_window(tile.pixels[*i]);
-                    found.add(pixel, &first_points(*i), tile.samples[*i])
-                });
-            } else {
-                let total = spp * (1 + multiple);
-                let chosen_pixels: Vec<[u32; 2]> = chosen.iter().map(|i| film_pixels[*i]).collect();
-                let chains = self.sample(&chosen_pixels, spp..total, seed, work, |more, merged| {
-                    let i = chosen[more.index];
-                    tile.sums[i] += more.sum;
-                    if let Some(guide) = tile.guides.get_mut(i) {
-                        guide.add(more.guide);
-                    }
-                    found.nonfinite += more.nonfinite;
-                    let before = if more.first == spp { first_points(i) } else { Vec::new() };
-                    let points = before.iter().chain(more.ends());
-                    merge(points, self.draw(film_pixels[i], more.first), merged);
-                    found.add(of_window(tile.pixels[i]), merged, total);
-                    tile.samples[i] = total;
-                });
-                found.chains += chains;
-                found.chains.extra_samples += u64::from(total - spp) * chosen.len() as u64;
-            }
-            for i in chosen.into_iter().filter(|i| tile.sums[*i] != Rgb::ZERO) {
-                found.known.push((of_window(tile.pixels[i]), tile.sums[i] / tile.samples[i] as f32));
-            }
-        }
-        let kept = tile.guides.iter().zip(&tile.samples).map(|(guide, samples)| guide.kept(*samples));
-        found.shrink_to_fit();
-        found.guides = tile.pixels.iter().map(|pixel| of_window(*pixel)).zip(kept).collect();
-        found
-    }
-
-    /// Returns the numbers of samples of film pixels beyond their first `samples`, as multiples of these. Pixels with
-    /// other numbers of first samples get no more.
-    fn multiples(&self, film_pixels: &[[u32; 2]], samples: &[u32], needs: Option<&Needs>) -> Vec<u32> {
-        let more = |(pixel, samples): (&[u32; 2], &u32)| match needs {
-            Some(needs) if *samples == self.settings.spp => needs.choice.more(&needs.luminances, *pixel),
-            _ => 0,
-        };
-        film_pixels.iter().zip(samples).map(more).collect()
-    }
-
     /// Returns the random number that thins the points of a film pixel whose samples start with `first`.
-    fn draw(&self, [x, y]: [u32; 2], first: u32) -> f32 {
+    pub(super) fn draw(&self, [x, y]: [u32; 2], first: u32) -> f32 {
         unit(hash(hash(x, y), self.settings.seed ^ 0x7e11 ^ first))
     }
 }

@@ -33,8 +33,11 @@ impl<'w> Tracer<'_, 'w> {
             }
         }
         self.direct.settled.smooth(window, &mut luminances);
-        let beside: Vec<[u32; 2]> =
-            near.film_pixels().filter(|pixel| window.index(*pixel).is_none()).collect();
+        let is_beside = |pixel: &[u32; 2]| window.index(*pixel).is_none();
+        let beside: Vec<[u32; 2]> = match near == *window {
+            true => Vec::new(),
+            false => near.film_pixels().filter(is_beside).collect(),
+        };
         let beside: Vec<Vec<[u32; 2]>> = beside.chunks(BATCH as usize).map(<[_]>::to_vec).collect();
         let (values, chains) = self.luminances(beside.clone(), seed, learned);
         beside

@@ -4,6 +4,7 @@
 //! Paper: Herzog et al. 2009, section 4. Eye samples are stored through specular chains and sorted by a kd-tree.
 
 use super::guides::{PackedGuide, PackedGuides};
+use super::parts::{Parts, RELEASE_BYTES};
 use super::points::{PointGeometry, VisibilitySample};
 use super::rays::TILE;
 use super::surfaces::{PackedSurface, PointSurfaces};
@@ -18,14 +19,6 @@ use rayon::prelude::*;
 use std::mem;
 use world::World;
 use world::view::View;
-
-/// Number of freed bytes at which memory is returned to the system. Ordinary images stay below; returning it there
-/// would cost time and save nothing.
-const RELEASE_BYTES: usize = 64 << 20;
-
-/// Maximum size in bytes of an array that may be in memory twice. Copies of larger arrays would set the peak memory of
-/// large images.
-const MAX_COPIED_BYTES: usize = 128 << 20;
 
 /// Maximum known luminance of a pixel that counts, so that sums stay finite.
 const MAX_KNOWN: f32 = 1e30;
@@ -94,23 +87,22 @@ impl<'w> EyePass<'w> {
                 Some(found)
             })
             .collect();
-        EyePass::gather(window, tiles, settings.spp.max(1), control)
+        let all_traced = tiles.len() == window.tile_count(TILE);
+        EyePass::gather(window, tiles, settings.spp.max(1), all_traced, control)
     }
 
-    /// Joins the tiles of a window with `spp` rays per pixel. If `control` is cancelled, some tiles are missing and
-    /// the pass has no points, since nothing lights them.
+    /// Joins the surfaces found in a window with `spp` rays per pixel. If `control` is cancelled, the pass has no
+    /// points, since nothing lights them. `all_traced` is false if tiles are missing then.
     pub(super) fn gather(
         window: &Window,
         mut tiles: Vec<VisibleSurfaces<'w>>,
         spp: u32,
+        all_traced: bool,
         control: &Control,
     ) -> EyePass<'w> {
         let spp = spp as f32;
-        let all_traced = tiles.len() == window.tile_count(TILE);
-        let mut known = Image::new(window.width, window.height);
         let mut chains = EyeCounts::default();
         let mut nonfinite = 0;
-        let mut guides = Vec::new();
         let seen: Vec<_> =
             tiles.iter_mut().map(|tile| (mem::take(&mut tile.guides), mem::take(&mut tile.known))).collect();
         for tile in &tiles {
@@ -118,6 +110,8 @@ impl<'w> EyePass<'w> {
             nonfinite += tile.nonfinite;
         }
         let put = || {
+            let mut known = Image::new(window.width, window.height);
+            let mut guides = Vec::new();
             for (new_guides, light) in seen {
                 for (pixel, guide) in new_guides {
                     guides.resize(known.pixels.len(), PackedGuide::default());
@@ -127,8 +121,9 @@ impl<'w> EyePass<'w> {
                     known.pixels[pixel as usize] += radiance / spp;
                 }
             }
+            (known, guides)
         };
-        let (arranged, ()) = rayon::join(|| Arranged::new(&mut tiles, control), put);
+        let (arranged, (known, guides)) = rayon::join(|| Arranged::new(&mut tiles, control), put);
         let complete = all_traced && arranged.is_some();
         let Arranged { points, index, mut samples } = arranged.unwrap_or_else(Arranged::empty);
         samples.par_iter_mut().for_each(|sample| sample.weight /= spp);
@@ -176,20 +171,21 @@ struct Arranged<'w> {
 impl<'w> Arranged<'w> {
     /// Moves points and samples out of the tiles; returns `None` if `control` is cancelled.
     fn new(tiles: &mut [VisibleSurfaces<'w>], control: &Control) -> Option<Arranged<'w>> {
-        let geometry = joined(tiles, |tile| mem::take(&mut tile.points.geometry), control)?;
-        let positions = || geometry.iter().map(|point| point.position);
+        let geometry = parts(tiles, |tile| mem::take(&mut tile.points.geometry)).joined_if_large(control)?;
+        let position = |i: usize| geometry.get(i).position;
         let ((index, order), rest) = rayon::join(
-            || KdTree::build_unless_cancelled(positions(), control),
+            || KdTree::build_unless_cancelled((0..geometry.len()).into_par_iter().map(position), control),
             || {
                 let (surfaces, factors) = joined_surfaces(tiles, control)?;
-                Some((surfaces, factors, joined(tiles, |tile| mem::take(&mut tile.visibility), control)?))
+                let samples = parts(tiles, |tile| mem::take(&mut tile.visibility));
+                Some((surfaces, factors, samples.joined_if_large(control)?))
             },
         );
         let (surfaces, factors, samples) = rest?;
         // Arrays are ordered in turn, so that only one at a time is in memory twice.
-        let geometry = ordered(geometry, &order, control)?;
-        let surfaces = PointSurfaces::from_parts(ordered(surfaces, &order, control)?, factors);
-        let samples = ordered(samples, &order, control)?;
+        let geometry = geometry.ordered(&order, control)?;
+        let surfaces = PointSurfaces::from_parts(surfaces.ordered(&order, control)?, factors);
+        let samples = samples.ordered(&order, control)?;
         Some(Arranged { points: ShadingPoints { geometry, surfaces }, index, samples })
     }
 
@@ -199,96 +195,29 @@ impl<'w> Arranged<'w> {
     }
 }
 
-/// Joins the surfaces of all tiles, and the factors of their lobes; returns `None` if `control` is cancelled.
+/// Returns one part of all tiles.
+fn parts<'w, T>(
+    tiles: &mut [VisibleSurfaces<'w>],
+    part: impl FnMut(&mut VisibleSurfaces<'w>) -> Vec<T>,
+) -> Parts<T> {
+    Parts::new(tiles.iter_mut().map(part).collect())
+}
+
+/// Returns the surfaces of all tiles, and the factors of their lobes; `None` if `control` is cancelled.
 fn joined_surfaces<'w>(
     tiles: &mut [VisibleSurfaces<'w>],
     control: &Control,
-) -> Option<(Vec<PackedSurface<'w>>, Vec<Rgb>)> {
-    let mut all = Vec::new();
-    let take = |tile: &mut VisibleSurfaces<'w>| {
-        let (mut packed, factors) = mem::take(&mut tile.points.surfaces).into_parts();
-        packed.iter_mut().for_each(|surface| surface.move_behind(all.len()));
-        all.extend(factors);
+) -> Option<(Parts<PackedSurface<'w>>, Vec<Rgb>)> {
+    let (mut factors, mut all) = (Vec::new(), Vec::with_capacity(tiles.len()));
+    for tile in tiles {
+        let (packed, own) = mem::take(&mut tile.points.surfaces).into_parts();
+        all.push((packed, factors.len()));
+        factors.extend(own);
+    }
+    let behind = |(mut packed, before): (Vec<PackedSurface<'w>>, usize)| {
+        packed.iter_mut().for_each(|surface| surface.move_behind(before));
         packed
     };
-    let surfaces = joined(tiles, take, control)?;
-    Some((surfaces, all))
-}
-
-/// Joins one part of all tiles into one array; returns `None` if `control` is cancelled. The tiles' parts are freed
-/// one by one, and memory is returned at intervals.
-fn joined<'w, T>(
-    tiles: &mut [VisibleSurfaces<'w>],
-    part: impl FnMut(&mut VisibleSurfaces<'w>) -> Vec<T>,
-    control: &Control,
-) -> Option<Vec<T>> {
-    let mut parts: Vec<Vec<T>> = tiles.iter_mut().map(part).collect();
-    let mut all = Vec::with_capacity(parts.iter().map(Vec::len).sum());
-    let mut freed = 0;
-    for part in &mut parts {
-        if control.is_cancelled() {
-            return None;
-        }
-        freed += size_of_val(&part[..]);
-        all.append(&mut mem::take(part));
-        if freed > RELEASE_BYTES {
-            give_back();
-            freed = 0;
-        }
-    }
-    Some(all)
-}
-
-/// Permutes the items: the item at `i` of the result was at `order[i]`. Returns `None` if `control` is cancelled.
-fn ordered<T: Copy + Send + Sync>(items: Vec<T>, order: &[u32], control: &Control) -> Option<Vec<T>> {
-    match size_of_val(&items[..]) > MAX_COPIED_BYTES {
-        true => moved(items, order, control),
-        false if control.is_cancelled() => None,
-        false => Some(order.par_iter().map(|i| items[*i as usize]).collect()),
-    }
-}
-
-/// Permutes the items in place, along the cycles of the permutation.
-fn moved<T: Copy>(mut items: Vec<T>, order: &[u32], control: &Control) -> Option<Vec<T>> {
-    let mut moved = vec![false; items.len()];
-    for start in 0..items.len() {
-        if moved[start] {
-            continue;
-        }
-        let (first, mut at) = (items[start], start);
-        loop {
-            if control.is_cancelled() {
-                return None;
-            }
-            moved[at] = true;
-            let from = order[at] as usize;
-            if from == start {
-                break;
-            }
-            items[at] = items[from];
-            at = from;
-        }
-        items[at] = first;
-    }
-    Some(items)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn items_are_ordered_along_cycles_of_any_length() {
-        let items: Vec<u32> = (100..108).collect();
-        let order = [0, 2, 3, 1, 5, 4, 7, 6];
-        let expected: Vec<u32> = order.iter().map(|i| items[*i as usize]).collect();
-        let control = Control::new();
-        assert_eq!(moved(items.clone(), &order, &control), Some(expected));
-        assert_eq!(moved(Vec::<u32>::new(), &[], &control), Some(vec![]));
-        let turned: Vec<u32> = (0..1000).map(|i| (i + 7) % 1000).collect();
-        assert_eq!(moved((0..1000).collect(), &turned, &control).as_ref(), Some(&turned));
-        assert_eq!(ordered((0..1000).collect(), &turned, &control).as_ref(), Some(&turned));
-        control.cancel();
-        assert_eq!(moved(items, &order, &control), None);
-    }
+    let surfaces = Parts::new(all.into_par_iter().map(behind).collect());
+    Some((surfaces.joined_if_large(control)?, factors))
 }

@@ -8,6 +8,7 @@
 use super::surfaces::{PointSurface, PointSurfaces};
 use base::math::Rgb;
 use glam::Vec3;
+use rayon::prelude::*;
 use std::ops::Range;
 use world::Surface;
 use world::material::Bsdf;
@@ -87,7 +88,7 @@ pub struct VisibilitySamples {
 impl VisibilitySamples {
     /// Returns one sample per point, in the order of the points.
     pub fn one_each(samples: Vec<VisibilitySample>) -> VisibilitySamples {
-        VisibilitySamples { first: (0..=samples.len() as u32).collect(), samples }
+        VisibilitySamples { first: (0..=samples.len() as u32).into_par_iter().collect(), samples }
     }
 
     /// Returns the samples of a shading point.

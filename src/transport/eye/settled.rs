@@ -36,6 +36,9 @@ impl Settled {
     /// Removes the noise of low sample counts from the luminances of settled pixels. Each becomes the mean of the
     /// settled pixels around it, where light varies little.
     pub fn smooth(&self, window: &Window, luminances: &mut Luminances) {
+        if self.pixels.is_empty() {
+            return;
+        }
         let noisy = luminances.values.clone();
         for pixel in window.film_pixels() {
             let is_settled = |at: [u32; 2]| window.index(at).is_some_and(|i| self.contains(i));

@@ -121,6 +121,11 @@ impl SampledTile<'_> {
     }
 }
 
+/// Returns the number of pixels that are traced together if each has so many samples.
+pub(super) fn traced_together(samples: u32) -> usize {
+    (BATCH / samples.max(1)).max(1) as usize
+}
+
 impl<'a, 'w> Tracer<'a, 'w> {
     /// Creates a tracer without guiding.
     pub(super) fn new(
@@ -188,7 +193,7 @@ impl<'a, 'w> Tracer<'a, 'w> {
         let TracerWorkspace { batch, ends, merged } = work;
         let mut chains = EyeCounts::default();
         let middle = samples.start + samples.len() as u32 / 2;
-        let together = (BATCH / samples.len().max(1) as u32).max(1) as usize;
+        let together = traced_together(samples.len() as u32);
         for (chunk, pixels) in pixels.chunks(together).enumerate() {
             for first in samples.clone().step_by(BATCH as usize) {
                 let part = first..first.saturating_add(BATCH).min(samples.end);

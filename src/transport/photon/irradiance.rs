@@ -109,6 +109,7 @@ const REACH: f32 = 1.0;
 mod tests {
     use super::*;
     use base::sampling::owen_sobol_2d;
+    use rayon::prelude::*;
 
     #[test]
     fn the_nearest_estimate_on_the_right_side_is_found() {
@@ -123,7 +124,7 @@ mod tests {
             IrradianceEstimate { position, normal, irradiance: Rgb::splat(i as f32), radius: 0.1 }
         };
         let estimates: Vec<IrradianceEstimate> = (0..3000).map(estimate).collect();
-        let (index, order) = KdTree::build(estimates.iter().map(|e| e.position));
+        let (index, order) = KdTree::build(estimates.par_iter().map(|e| e.position));
         let estimates: Vec<IrradianceEstimate> = order.iter().map(|&i| estimates[i as usize]).collect();
         let map = IrradianceMap::new(&estimates, &index);
         for (point, normal, near) in [

@@ -74,10 +74,10 @@ const ITEMS_PER_TEST: usize = 1 << 18;
 /// cancelled.
 fn indexed<T: Copy + Send + Sync>(
     items: Vec<T>,
-    position: impl Fn(&T) -> Vec3,
+    position: impl Fn(&T) -> Vec3 + Sync + Send,
     control: &Control,
 ) -> (KdTree, Vec<T>) {
-    let (index, order) = KdTree::build_unless_cancelled(items.iter().map(position), control);
+    let (index, order) = KdTree::build_unless_cancelled(items.par_iter().map(position), control);
     let mut ordered = Vec::with_capacity(items.len());
     for part in order.chunks(ITEMS_PER_TEST) {
         if control.is_cancelled() {

@@ -10,6 +10,7 @@ use base::kd_tree::KdTree;
 use base::math::{Rgb, luminance};
 use base::progress::Control;
 use glam::{Mat3, Vec2, Vec3};
+use rayon::prelude::*;
 use scene::{MaterialId, Scene};
 use std::sync::LazyLock;
 use world::SurfacePoint;
@@ -38,7 +39,7 @@ pub struct Floor {
 
 impl Floor {
     pub fn new(positions: &[Vec3]) -> Floor {
-        let (index, order) = KdTree::build(positions.iter().copied());
+        let (index, order) = KdTree::build(positions.par_iter().copied());
         let surface = PointSurface {
             bsdf: MATERIALS.at(MaterialId(0), Vec2::ZERO),
             geometric_normal: Vec3::Z,
