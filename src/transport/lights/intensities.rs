@@ -3,9 +3,10 @@
 //! The light that a limit takes away depends on them: a few bright VPLs lose more than many faint VPLs of the same
 //! flux. Intensities differ with the albedo and with the density of photons.
 
-use super::{Origin, Profiles, VplKind, VplSet};
-use base::math::luminance;
+use super::{Origin, Profiles, Vpl, VplKind, VplSet};
+use base::math::{Rgb, luminance};
 use glam::Vec3;
+use rayon::prelude::*;
 use world::light::Regions;
 
 /// Maximum number of VPLs that regions are made of.
@@ -38,20 +39,20 @@ impl IntensitySamples {
     pub fn new(sets: &[VplSet], profiles: &Profiles) -> IntensitySamples {
         let indirect = || sets.iter().filter(|set| set.origin == Origin::Indirect);
         let stride = indirect().map(VplSet::len).sum::<usize>().div_ceil(MAX_SAMPLES).max(1);
-        let (mut places, mut intensities) = (Vec::new(), Vec::new());
+        let mut found: Vec<(Vec3, f64)> = Vec::new();
         for set in indirect() {
-            for (vpl, intensity) in set.vpls.iter().zip(&set.intensities).step_by(stride) {
+            let sample = |(vpl, intensity): (&Vpl, &Rgb)| {
                 let as_diffuse = match set.kind {
                     VplKind::Lobed => profiles.lobes[vpl.lobe()].diffuse_equivalent(),
                     _ => 1.0,
                 };
                 let intensity = f64::from(luminance(*intensity)) * f64::from(as_diffuse);
-                if intensity > 0.0 {
-                    places.push(vpl.position);
-                    intensities.push(intensity);
-                }
-            }
+                (intensity > 0.0).then_some((vpl.position, intensity))
+            };
+            let samples = set.vpls.par_iter().zip(&set.intensities).step_by(stride);
+            found.par_extend(samples.filter_map(sample));
         }
+        let (places, intensities) = found.into_iter().unzip();
         IntensitySamples { places, intensities }
     }
 }
@@ -81,8 +82,6 @@ impl Intensities {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::lights::Vpl;
-    use base::math::Rgb;
     use base::sampling::owen_sobol_2d;
 
     /// Few bright lights left of the origin, and many faint ones right of it.

@@ -7,6 +7,7 @@
 //! members evaluates the splits of large clusters.
 
 use super::cost::{DIMENSIONS, LUMINANCE, Primitive, PrimitiveBounds, cluster_cost};
+use super::partition::partition;
 use super::topology::Topology;
 use base::progress::Control;
 
@@ -234,23 +235,4 @@ fn cheapest_border(bins: &Bins, binning: &Binning, c_sq: f32) -> Option<(usize, 
         }
     }
     best
-}
-
-/// Moves primitives that satisfy `goes_left` to the front; returns their number.
-fn partition(primitives: &mut [Primitive], goes_left: impl Fn(&Primitive) -> bool) -> usize {
-    let (mut i, mut j) = (0, primitives.len());
-    loop {
-        while i < j && goes_left(&primitives[i]) {
-            i += 1;
-        }
-        while i < j && !goes_left(&primitives[j - 1]) {
-            j -= 1;
-        }
-        if i >= j {
-            return i;
-        }
-        primitives.swap(i, j - 1);
-        i += 1;
-        j -= 1;
-    }
 }

@@ -12,9 +12,13 @@ use crate::lights::{Profiles, VplKind, VplSet};
 use base::math::{Rgb, luminance};
 use base::progress::Control;
 use glam::{DVec3, Vec3};
+use rayon::prelude::*;
 
 /// Number of leaves above which both halves are finished in parallel.
 const PARALLEL: usize = 4096;
+
+/// Number of leaves above which all threads compute the cone of a node.
+const LARGE: usize = 8 * PARALLEL;
 
 /// Margin of cosines: more than the rounding of a dot product of unit vectors.
 const COSINE_SLACK: f32 = 1e-6;
@@ -143,10 +147,14 @@ impl Finisher<'_> {
 
     /// Sets the cone about `axis` that contains the normals of all members, or the axes of their lobes.
     fn set_cone(&self, node: &mut LightNode, axis: Vec3, members: &[Primitive]) {
-        let cos_beta = members.iter().fold(1.0f32, |least, r| {
-            let cos = r.normal().dot(axis);
-            if cos < least { cos } else { least }
-        });
+        let least = |a: f32, b: f32| if b < a { b } else { a };
+        let cosine = |members: &[Primitive]| {
+            members.iter().fold(1.0f32, |cos_beta, r| least(cos_beta, r.normal().dot(axis)))
+        };
+        let cos_beta = match members.len() > LARGE {
+            true => members.par_chunks(PARALLEL).map(cosine).reduce(|| 1.0, least),
+            false => cosine(members),
+        };
         let lobe = |r: &Primitive| &self.profiles.lobes[self.set.vpls[r.index() as usize].lobe()];
         let width_sq = || members.iter().map(|r| lobe(r).width_sq()).fold(0.0, f32::max);
         let width_sq = (self.set.kind == VplKind::Lobed).then(width_sq);

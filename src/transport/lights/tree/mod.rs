@@ -8,6 +8,7 @@ mod cost;
 mod divisive;
 mod finish;
 mod node;
+mod partition;
 #[cfg(test)]
 mod tests;
 mod topology;
@@ -88,17 +89,22 @@ impl LightTrees {
         }
         let primitive = |i: usize| Primitive::new(set, &self.profiles, i as u32);
         let primitives = (0..n).into_par_iter().map(primitive).collect();
-        let topology = match family {
-            Family::Divisive => divisive::build(primitives, diagonal * diagonal, control)?,
-            Family::Agglomerative => agglomerative::build(primitives, diagonal * diagonal, control)?,
+        let build = || match family {
+            Family::Divisive => divisive::build(primitives, diagonal * diagonal, control),
+            Family::Agglomerative => agglomerative::build(primitives, diagonal * diagonal, control),
         };
         let (first_node, first_vpl) = (self.nodes.len(), self.vpls.len());
+        let nodes = &mut self.nodes;
         let blank = LightNode::new(base::math::Rgb::ZERO, 0, set.kind, set.origin);
         let end = first_node + 2 * n;
-        self.nodes.reserve(2 * n);
-        while self.nodes.len() < end && !control.is_cancelled() {
-            self.nodes.par_extend(rayon::iter::repeat_n(blank, NODES_PER_TEST.min(end - self.nodes.len())));
-        }
+        let allocate = || {
+            nodes.reserve(2 * n);
+            while nodes.len() < end && !control.is_cancelled() {
+                nodes.par_extend(rayon::iter::repeat_n(blank, NODES_PER_TEST.min(end - nodes.len())));
+            }
+        };
+        // The first splits of a tree leave threads idle.
+        let topology = rayon::join(build, allocate).0?;
         let nodes = &mut self.nodes[first_node..];
         let finisher = Finisher { set, profiles: &self.profiles, first_vpl: first_vpl as u32, control };
         finisher.finish(&topology, nodes, first_node as u32)?;
