@@ -11,6 +11,7 @@ use super::tiles::Tile;
 use crate::light::regions::Regions;
 use base::math::{LANES, Vec3x16};
 use glam::Vec3;
+use rayon::prelude::*;
 
 /// Share of the samples that are by flux alone.
 const BY_FLUX: f32 = 0.2;
@@ -64,7 +65,7 @@ impl LearnedSky {
                 tiles.iter().zip(&sums).map(|(tile, sums)| tile.flux * mean_square(sums).sqrt()).collect();
             TileTable::new(tiles, &weights, BY_FLUX)
         };
-        LearnedSky { tables: members.iter().map(table).collect(), regions }
+        LearnedSky { tables: members.par_iter().map(table).collect(), regions }
     }
 
     /// Returns the distributions at sixteen points.
