@@ -130,12 +130,13 @@ impl WideKdTree {
 mod tests {
     use super::*;
     use crate::sampling::owen_sobol_2d;
+    use rayon::prelude::*;
 
     #[test]
     fn the_nearest_is_found_among_all_in_few_leaves() {
         for n in [0u32, 1, 40, 100, 600, 5000, 70_000] {
             let at = |i: u32| owen_sobol_2d(i, 1).extend(owen_sobol_2d(i, 2).x);
-            let (index, order) = KdTree::build((0..n).map(at).collect::<Vec<_>>().into_iter());
+            let (index, order) = KdTree::build((0..n).map(at).collect::<Vec<_>>().into_par_iter());
             let points: Vec<Vec3> = order.iter().map(|&i| at(i)).collect();
             let nearest_index = WideKdTree::new(&index, &points);
             for x in [
