@@ -39,8 +39,8 @@ fn by_one_thread(primitives: &mut [Primitive], goes_left: impl Fn(&Primitive) ->
     }
 }
 
-/// Swaps the pairs that [`by_one_thread`] swaps: the k-th misplaced primitive of the left part, and the k-th from the end
-/// of the right part.
+/// Swaps the pairs that [`by_one_thread`] swaps: the k-th misplaced primitive of the left part, and the k-th from the
+/// end of the right part.
 fn by_all_threads(
     primitives: &mut [Primitive],
     goes_left: impl Fn(&Primitive) -> bool + Sync,
