@@ -20,7 +20,6 @@ mod renderer;
 mod sampled_pixels;
 mod sampling;
 mod scale;
-mod shared_pilots;
 mod tally;
 
 pub use lights::LightStore;

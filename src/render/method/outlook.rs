@@ -3,7 +3,6 @@
 
 use super::overlap::overlap;
 use super::prepared::{MAX_SEEN, seen};
-use super::shared_pilots::SharedPilots;
 use base::progress::Control;
 use transport::eye::{EyePass, EyeSettings, PointGeometry};
 use world::view::View;
@@ -16,14 +15,12 @@ const VIEWS: usize = 256;
 const SIDE: u32 = 64;
 
 /// Surfaces that the views of a scene see together.
-#[derive(Default)]
+#[derive(Clone, Debug, Default)]
 pub struct Outlook {
     /// Visible surface points, spread over all views; empty if no light depends on them.
     pub points: Vec<SurfacePoint>,
     /// Mean number of views, among those that share records, that see a surface at similar distances.
     pub overlap: f32,
-    /// Pilots of the views together.
-    pub pilots: SharedPilots,
     /// Number of views.
     views: usize,
 }
@@ -34,9 +31,9 @@ impl Outlook {
         let settings = EyeSettings { spp: 1, seed: 0, max_depth: world.scene.path_limit(None) };
         let count = views.len().min(VIEWS);
         let (mut points, mut shown) = (Vec::new(), Vec::new());
-        let chosen: Vec<View> = (0..count).map(|i| views[i * views.len() / count]).collect();
-        for View { camera, window } in &chosen {
-            let view = View::whole(*camera, small(window.film));
+        for i in 0..count {
+            let View { camera, window } = views[i * views.len() / count];
+            let view = View::whole(camera, small(window.film));
             let eye = EyePass::trace(world, &view, settings, control);
             points.extend(seen(world, &eye, MAX_SEEN / count));
             let finer = view.window.film[0] as f32 / window.film[0] as f32;
@@ -45,9 +42,8 @@ impl Outlook {
         }
         // Views that are not looked at overlap as much as the others.
         let others = views.len().saturating_sub(1) as f32 / count.saturating_sub(1).max(1) as f32;
-        let of_chosen = overlap(&shown).max(1.0);
-        let overlap = 1.0 + (of_chosen - 1.0) * others;
-        Outlook { points, overlap, pilots: SharedPilots::new(chosen, of_chosen), views: views.len() }
+        let overlap = 1.0 + (overlap(&shown) - 1.0).max(0.0) * others;
+        Outlook { points, overlap, views: views.len() }
     }
 
     /// Returns the outlook of chunks of `count` views, which alone share records.

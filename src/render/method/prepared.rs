@@ -2,7 +2,6 @@
 
 use super::Sampling;
 use super::lights::{LightStore, lights_wanted};
-use super::shared_pilots::SharedPilots;
 use super::tally::Tally;
 use base::progress::Control;
 use base::stats::Stage;
@@ -40,8 +39,6 @@ pub struct Preparation<'a> {
     pub family: Family,
     /// Surfaces that the lights are made for.
     pub lit: LitSurfaces<'a>,
-    /// Pilots of the eye pass that several views share; `None` for a view of its own.
-    pub pilots: Option<&'a SharedPilots>,
 }
 
 /// Shading points and virtual lights: an image before its lighting.
@@ -63,15 +60,10 @@ impl<'w> Prepared<'w> {
         preparation: &Preparation,
         control: &Control,
     ) -> Prepared<'w> {
-        let Preparation { sampling, direct, lights: numbers, family, lit, pilots } = preparation;
+        let Preparation { sampling, direct, lights: numbers, family, lit } = preparation;
         let mut tally = Tally::default();
         let settings = sampling.eye(&world.scene);
         let caustics = lights.photons.for_image(world, view, settings, control, &mut tally);
-        let mut direct = direct.clone();
-        // Photons differ from view to view.
-        if let (Some(direct), Some(shared), None) = (&mut direct, pilots, &caustics) {
-            direct.pilots = shared.get(world, settings, direct, control, &mut tally);
-        }
         control.begin(Stage::EyePass, view.window.tile_count(TILE) as u64);
         let eye = tally.time(Stage::EyePass, || {
             EyePass::of(world, view, settings, direct.as_ref(), caustics.as_ref(), control)

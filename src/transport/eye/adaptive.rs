@@ -68,15 +68,11 @@ impl Luminances {
     }
 }
 
-/// Returns the number of squares that the pilot of a film samples.
-pub fn square_count(film: [u32; 2]) -> u32 {
+/// Returns the squares of a film that the pilot samples. They do not depend on the crop.
+pub fn pilot(film: [u32; 2]) -> Vec<Window> {
     let pixels = u64::from(film[0]) * u64::from(film[1]);
-    (pixels / PIXELS_PER_SQUARE).clamp(1, MAX_SQUARES.into()) as u32
-}
-
-/// Returns `count` squares of a film. They do not depend on the crop.
-pub fn pilot(film: [u32; 2], count: u32) -> Vec<Window> {
-    Window::spread(film, SQUARE, count, 0).collect()
+    let squares = (pixels / PIXELS_PER_SQUARE).clamp(1, MAX_SQUARES.into()) as u32;
+    Window::spread(film, SQUARE, squares, 0).collect()
 }
 
 impl AdaptiveRule {
@@ -136,7 +132,7 @@ mod tests {
     fn multiples(luminance: impl Fn([u32; 2]) -> f32, share: f32) -> Vec<u32> {
         let film = [256, 192];
         let squares: Vec<Luminances> =
-            pilot(film, square_count(film)).into_iter().map(|square| seen(square, &luminance)).collect();
+            pilot(film).into_iter().map(|square| seen(square, &luminance)).collect();
         let choice = AdaptiveRule::new(&squares, share);
         let whole = seen(Window::whole(film), &luminance);
         whole.window.film_pixels().map(|pixel| choice.more(&whole, pixel)).collect()
@@ -199,8 +195,7 @@ mod tests {
     fn a_pixel_has_no_say_in_its_own_samples() {
         let lone = |at: [u32; 2]| if at == [80, 80] { 50.0 } else { 1.0 };
         let film = [256, 192];
-        let squares: Vec<Luminances> =
-            pilot(film, square_count(film)).into_iter().map(|square| seen(square, |_| 1.0)).collect();
+        let squares: Vec<Luminances> = pilot(film).into_iter().map(|square| seen(square, |_| 1.0)).collect();
         let (choice, whole) = (AdaptiveRule::new(&squares, 0.2), seen(Window::whole(film), lone));
         let found: Vec<[u32; 2]> =
             whole.window.film_pixels().filter(|pixel| choice.more(&whole, *pixel) > 0).collect();
@@ -211,7 +206,7 @@ mod tests {
     #[test]
     fn films_of_any_size_have_a_pilot() {
         for film in [[1, 1], [2, 1], [1, 300], [3, 3], [5, 4], [4000, 3000]] {
-            let squares = pilot(film, square_count(film));
+            let squares = pilot(film);
             assert!(squares.iter().all(Window::is_valid) && squares.len() <= MAX_SQUARES as usize);
             let squares: Vec<Luminances> = squares.into_iter().map(|square| seen(square, |_| 1.0)).collect();
             let choice = AdaptiveRule::new(&squares, 0.2);

@@ -11,13 +11,13 @@
 //! [`extra`]: super::extra
 //! [`learn`]: super::learn
 
-use super::effort::SampledSquares;
 use super::guides::Guide;
 use super::merge::{MergedPoint, MergedPoints, merge};
 use super::more::TilePart;
 use super::points::VisibilitySample;
 use super::tracer::{BATCH, SampledTile, Tracer, TracerWorkspace};
 use super::{EyeCounts, EyePass, EyeSettings, LightSources, TILE, VisibleSurfaces};
+use crate::paths::RayCounts;
 use base::math::Rgb;
 use base::parallel::{ShortRuns, Workspaces};
 use base::progress::Control;
@@ -40,21 +40,11 @@ impl<'w> EyePass<'w> {
         control: &Control,
     ) -> EyePass<'w> {
         let settings = EyeSettings { spp: settings.spp.max(1), ..settings };
-        let mut tracer = Tracer::new(world, view, settings, sources, control);
-        let own;
-        let (pilots, is_own) = match &sources.direct.pilots {
-            Some(shared) => (&**shared, false),
-            None => {
-                own = tracer.pilots();
-                (&own, true)
-            }
-        };
-        tracer.edges = pilots.edges;
-        let learned = pilots.learned.as_ref();
-        let film = view.window.film_pixel_count();
-        let effort =
-            |squares: &SampledSquares| squares.effort(settings.spp, film, &tracer.direct.extra_samples);
-        let effort = pilots.squares.as_ref().map(effort);
+        let mut counts = RayCounts::default();
+        let mut tracer = Tracer::new(world, view, settings, sources, control, &mut counts);
+        let found = tracer.learn(settings.seed, 1);
+        let learned = found.as_ref().map(|(learned, _)| learned);
+        let effort = tracer.effort(learned);
         tracer.light_samples.count = effort.as_ref().map_or(1, |effort| effort.light_samples);
         let rounds = effort.as_ref().map_or(1, |effort| effort.rounds);
         tracer.settings.spp *= rounds;
@@ -79,20 +69,20 @@ impl<'w> EyePass<'w> {
         let parts: Vec<Vec<TilePart>> = tiles.into_par_iter().one_by_one().map(parts).collect();
         let parts: Vec<TilePart> = parts.into_iter().flatten().collect();
         let more = |part| works.with(|work| tracer.more_samples(part, work));
-        let found = parts.into_par_iter().one_by_one().map(more).collect();
-        let mut pass = EyePass::gather(&view.window, found, 1, all_traced, control);
-        if is_own {
-            pass.chains += pilots.chains;
+        let surfaces = parts.into_par_iter().one_by_one().map(more).collect();
+        let mut pass = EyePass::gather(&view.window, surfaces, 1, all_traced, control);
+        pass.chains.rays += counts.rays;
+        pass.chains.shadow_rays += counts.shadow_rays;
+        if let Some((_, chains)) = &found {
+            pass.chains += *chains;
         }
         if let Some(needs) = needs {
             pass.chains += needs.chains;
         }
-        if let Some(squares) = pilots.squares.as_ref().filter(|_| is_own) {
-            pass.chains += squares.chains;
-        }
         let more = u64::from(settings.spp) * u64::from(rounds - 1);
         pass.chains.extra_samples += more * view.window.pixel_count();
         if let Some(effort) = effort {
+            pass.chains += effort.chains;
             pass.light_samples = effort.light_samples;
             pass.noise = effort.noise;
         }

@@ -1,11 +1,10 @@
 //! Order for direct light that the eye pass samples.
 
-use super::{ExtraSamples, EyePilots, Settled};
+use super::{ExtraSamples, Settled};
 use crate::caustics::Caustics;
-use std::sync::Arc;
 
 /// Order for direct light that the eye pass samples.
-#[derive(Clone, Default)]
+#[derive(Clone, Debug, Default)]
 pub struct DirectSampling {
     /// True for materials all of whose rough lobes chains follow, by material. For other materials chains follow the
     /// sharp lobes.
@@ -16,8 +15,6 @@ pub struct DirectSampling {
     pub settled: Settled,
     /// True if the pass also computes guides for a denoiser.
     pub guides: bool,
-    /// Results of pilots that several views share; `None` if the view has pilots of its own.
-    pub pilots: Option<Arc<EyePilots>>,
 }
 
 /// Sources of the light that paths of the eye pass find at first hits.

@@ -5,8 +5,23 @@
 //! each stratified by itself, is all of the noise. If light samples cause the share ρ of the variance, `n` light
 //! samples leave the variance 1 - ρ + ρ / n at the cost c + n. The product of both is least at n = √(c ρ / (1 - ρ)).
 
-use super::adaptive::{AdaptiveRule, Luminances};
-use super::{ExtraSamples, EyeCounts};
+use super::adaptive::{AdaptiveRule, Luminances, pilot};
+use super::tracer::{PixelSamples, Tracer};
+use super::{EyeCounts, EyeSettings};
+use crate::paths::LightSamples;
+use base::math::{Rgb, luminance};
+use base::parallel::{ShortRuns, Workspaces};
+use rayon::prelude::*;
+use world::light::Learned;
+
+/// Maximum number of first samples that may be followed by more, so that sample numbers fit into 32 bits.
+const MAX_ADAPTIVE: u32 = u32::MAX / 4;
+
+/// Seed of the pilot's samples, combined with the image's seed.
+const PILOT_SEED: u32 = 0x3c6e_f372;
+
+/// Offset into the light-sample sequence for the pilot's second pass, so that it is independent of the first.
+const SECOND_PASS_OFFSET: u32 = 1 << 20;
 
 /// Cost of an eye sample without its light sample, over the cost of a light sample.
 const SAMPLE_COST: f32 = 3.0;
@@ -14,19 +29,7 @@ const SAMPLE_COST: f32 = 3.0;
 /// Maximum number of light samples.
 const MAX_LIGHT_SAMPLES: f32 = 4.0;
 
-/// Squares of pixels that are sampled twice, of one view or of several.
-#[derive(Default)]
-pub(super) struct SampledSquares {
-    pub(super) squares: Vec<Luminances>,
-    /// Means of each square's pixels, in the same order.
-    pub(super) values: Means,
-    /// Means of the second time.
-    pub(super) again: Means,
-    /// Rays that the samples took.
-    pub(super) chains: EyeCounts,
-}
-
-/// Sample counts of a view.
+/// Result of the pilot.
 pub(super) struct Effort {
     /// Rule that chooses the pixels with more samples; `None` if no pixel gets more.
     pub choice: Option<AdaptiveRule>,
@@ -36,33 +39,71 @@ pub(super) struct Effort {
     pub rounds: u32,
     /// Mean over pixels of the relative variance, at most 1 per pixel.
     pub noise: f32,
+    /// Rays that the pilot traced.
+    pub chains: EyeCounts,
 }
 
 /// Means of all samples of pixels, and of the first half of them, by group.
-pub(super) type Means = Vec<Vec<[f32; 2]>>;
+type Means = Vec<Vec<[f32; 2]>>;
 
-impl SampledSquares {
-    /// Adds the squares of another view behind these.
-    pub(super) fn append(&mut self, mut others: SampledSquares) {
-        self.squares.append(&mut others.squares);
-        self.values.append(&mut others.values);
-        self.again.append(&mut others.again);
-        self.chains += others.chains;
-    }
-
-    /// Returns the sample counts of a film of so many pixels, with `spp` first samples.
-    pub(super) fn effort(&self, spp: u32, film: u64, extra: &ExtraSamples) -> Effort {
-        let SampledSquares { squares, values, again, chains } = self;
+impl<'w> Tracer<'_, 'w> {
+    /// Runs the pilot; returns `None` with a single sample per pixel, or with so many that no pixel needs more.
+    pub(super) fn effort(&mut self, learned: Option<&Learned>) -> Option<Effort> {
+        let EyeSettings { spp, seed, .. } = self.settings;
+        if !(2..=MAX_ADAPTIVE).contains(&spp) {
+            return None;
+        }
+        let squares = pilot(self.view.window.film);
+        let pixels: Vec<Vec<[u32; 2]>> =
+            squares.iter().map(|square| square.film_pixels().collect()).collect();
+        let (values, traced) = self.luminances(pixels.clone(), seed ^ PILOT_SEED, learned);
+        self.light_samples.first = SECOND_PASS_OFFSET;
+        let (again, traced_again) = self.luminances(pixels, seed ^ PILOT_SEED, learned);
+        self.light_samples = LightSamples::ONE;
+        let chains: EyeCounts = traced.into_iter().chain(traced_again).sum();
+        let means = |group: &Vec<[f32; 2]>| group.iter().map(|[mean, _]| *mean).collect();
+        let filled = |(window, group)| Luminances { window, values: means(group) };
         let sampled: usize = 2 * values.iter().map(Vec::len).sum::<usize>() * spp as usize;
+        let film = self.view.window.film_pixel_count() as f64;
         let a_sample = (chains.rays + chains.shadow_rays) as f64 / sampled.max(1) as f64;
-        let rays = a_sample * f64::from(spp) * film as f64;
-        let dark = AdaptiveRule::new(squares, 0.0).dark;
-        let noise = PixelNoise::of(values, again, spp, dark);
+        let rays = a_sample * f64::from(spp) * film;
+        let squares: Vec<Luminances> = squares.into_iter().zip(&values).map(filled).collect();
+        let dark = AdaptiveRule::new(&squares, 0.0).dark;
+        let noise = PixelNoise::of(&values, &again, spp, dark);
         let light_samples = noise.light_samples();
+        let extra = &self.direct.extra_samples;
         let rounds = extra.rounds(rays, noise.with(light_samples));
         let share = extra.share(f64::from(rounds) * rays);
-        let choice = (share > 0.0).then(|| AdaptiveRule::new(squares, share));
-        Effort { choice, light_samples, rounds, noise: noise.all / rounds as f32 }
+        let choice = (share > 0.0).then(|| AdaptiveRule::new(&squares, share));
+        Some(Effort { choice, light_samples, rounds, noise: noise.all / rounds as f32, chains })
+    }
+
+    /// Returns the luminances that the first samples of groups of film pixels find, by all of them and by the first
+    /// half, and the rays of each group. Luminances are 0 once cancelled.
+    pub(super) fn luminances(
+        &self,
+        groups: Vec<Vec<[u32; 2]>>,
+        seed: u32,
+        learned: Option<&Learned>,
+    ) -> (Means, Vec<EyeCounts>) {
+        let spp = self.settings.spp;
+        let works = Workspaces::new(|| self.workspace(learned));
+        let look = |pixels: Vec<[u32; 2]>| {
+            let mut sums = vec![[Rgb::ZERO; 2]; pixels.len()];
+            if self.control.is_cancelled() {
+                return (vec![[0.0; 2]; pixels.len()], EyeCounts::default());
+            }
+            let each = |found: PixelSamples<'_, 'w>, _: &mut Vec<_>| {
+                let [sum, half] = &mut sums[found.index];
+                *sum += found.sum;
+                *half += found.half;
+            };
+            let chains = works.with(|work| self.sample(&pixels, 0..spp, seed, work, each));
+            let counts = [spp, (spp / 2).max(1)].map(|count| count as f32);
+            let mean = |sums: [Rgb; 2]| [0, 1].map(|i| luminance(sums[i] / counts[i]));
+            (sums.into_iter().map(mean).collect(), chains)
+        };
+        groups.into_par_iter().one_by_one().map(look).unzip()
     }
 }
 

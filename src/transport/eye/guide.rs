@@ -42,103 +42,62 @@ const ALL_BLIND_SHARE: f32 = 0.2;
 /// Minimum share of these edges that is traced.
 const MIN_BLIND: f32 = 0.1;
 
-/// Light that paths through the whole film find, and the rays that they took.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct GuidePaths {
-    /// Number of paths.
-    count: u32,
-    /// Sums: light by delta lobes, light by delta and glossy lobes, roots of all light, squares of the first.
-    sums: [f64; 4],
-    /// Rays.
-    pub(super) rays: RayCounts,
-}
-
-impl GuidePaths {
-    /// Number of paths for a view alone.
-    pub(super) const FOR_VIEW: u32 = PATHS;
-
-    /// Traces at least `count` paths. Each policy that `all` makes finds the light of the eye pass along paths sampled
-    /// without guiding. No path is traced in a scene without mirrors and glass.
-    pub(super) fn trace<'w, R: PathPolicy<'w>>(
-        world: &'w World,
-        view: &View,
-        settings: EyeSettings,
-        all: impl Fn() -> R + Sync,
-        caustics: Option<&Caustics>,
-        count: u32,
-    ) -> GuidePaths {
-        if !world.specular.bends_light() {
-            return GuidePaths::default();
-        }
-        let batches = count.div_ceil(BATCH);
-        let sums_of = |first| sums_of(world, view, settings, &all, caustics, first);
-        let found: Vec<([f64; 4], RayCounts)> =
-            (0..batches).into_par_iter().one_by_one().map(|batch| sums_of(batch * BATCH)).collect();
-        let mut paths = GuidePaths { count: batches * BATCH, ..GuidePaths::default() };
-        for (sums, rays) in found {
-            paths.add(&GuidePaths { count: 0, sums, rays });
-        }
-        paths
-    }
-
-    /// Adds the paths of another view.
-    pub(super) fn add(&mut self, others: &GuidePaths) {
-        self.count += others.count;
-        self.sums.iter_mut().zip(others.sums).for_each(|(sum, other)| *sum += other);
-        self.rays.rays += others.rays.rays;
-        self.rays.shadow_rays += others.rays.shadow_rays;
-    }
-
-    /// Estimates both probabilities.
-    pub(super) fn edges(&self, world: &World) -> ScatteredEdges {
-        let mut edges = ScatteredEdges::default();
-        if self.count == 0 {
-            return edges;
-        }
-        let (count, has_delta_lobes) = (f64::from(self.count), world.specular.has_delta_lobes());
-        let [by_delta, by_all, roots, squares] = self.sums.map(|sum| sum / count);
-        let share = |light: f64| (light / (light + roots * roots).max(f64::MIN_POSITIVE)) as f32;
-        let guided = share(by_delta);
-        let is_chance = count * by_delta * by_delta < MIN_PATHS * squares;
-        if has_delta_lobes && guided >= MIN_SHARE && !is_chance {
-            edges.guided = MAX_GUIDED * guided / (guided + HALF_MAX_SHARE);
-        }
-        edges.blind = (share(by_all) / ALL_BLIND_SHARE).clamp(MIN_BLIND, 1.0);
-        edges
-    }
-}
-
-/// Returns the sums of a batch of paths from sample `first` on, and its rays.
-fn sums_of<'w, R: PathPolicy<'w>>(
+/// Estimates both probabilities. Each policy that `all` makes finds the light of the eye pass along paths sampled
+/// without guiding.
+pub(super) fn edges<'w, R: PathPolicy<'w>>(
     world: &'w World,
     view: &View,
     settings: EyeSettings,
-    all: &(impl Fn() -> R + Sync),
+    all: impl Fn() -> R + Sync,
     caustics: Option<&Caustics>,
-    first: u32,
-) -> ([f64; 4], RayCounts) {
+    counts: &mut RayCounts,
+) -> ScatteredEdges {
+    let mut edges = ScatteredEdges::default();
+    if !world.specular.bends_light() {
+        return edges;
+    }
     let has_delta_lobes = world.specular.has_delta_lobes();
     let film = view.window.film;
     let seed = settings.seed ^ SEED;
-    let (mut batch, mut counts, mut sums) = (Batch::default(), RayCounts::default(), [0.0; 4]);
-    let paths = (first..first + BATCH).map(|sample| {
-        let at = owen_sobol_2d(sample, seed);
-        let pixel = |at: f32, length: u32| ((at * length as f32) as u32).min(length - 1);
-        PathStart { pixel: [pixel(at.x, film[0]), pixel(at.y, film[1])], sample, seed }
-    });
-    let finite = |light: Rgb| if light.is_finite() { f64::from(luminance(light)) } else { 0.0 };
-    // Without delta lobes there is nothing to aim at.
-    let wanted = [(0, false), (1, true)].into_iter().filter(|(_, glossy)| *glossy || has_delta_lobes);
-    for (i, glossy) in wanted {
-        start(&mut batch, paths.clone(), world, view, Estimand::Pixels, 1);
-        let mut policy = BySpecularLobes { glossy, caustics, lookups: CausticLookups::NONE };
-        for light in batch.trace(world, settings.max_depth, &mut policy, &mut counts).map(finite) {
-            sums[i] += light;
-            sums[3] += if glossy { 0.0 } else { light * light };
+    // Sums: light by delta lobes, light by delta and glossy lobes, roots of all light, squares of the first.
+    let sums_of = |first: u32| {
+        let (mut batch, mut counts, mut sums) = (Batch::default(), RayCounts::default(), [0.0; 4]);
+        let paths = (first..first + BATCH).map(|sample| {
+            let at = owen_sobol_2d(sample, seed);
+            let pixel = |at: f32, length: u32| ((at * length as f32) as u32).min(length - 1);
+            PathStart { pixel: [pixel(at.x, film[0]), pixel(at.y, film[1])], sample, seed }
+        });
+        let finite = |light: Rgb| if light.is_finite() { f64::from(luminance(light)) } else { 0.0 };
+        // Without delta lobes there is nothing to aim at.
+        let wanted = [(0, false), (1, true)].into_iter().filter(|(_, glossy)| *glossy || has_delta_lobes);
+        for (i, glossy) in wanted {
+            start(&mut batch, paths.clone(), world, view, Estimand::Pixels, 1);
+            let mut policy = BySpecularLobes { glossy, caustics, lookups: CausticLookups::NONE };
+            for light in batch.trace(world, settings.max_depth, &mut policy, &mut counts).map(finite) {
+                sums[i] += light;
+                sums[3] += if glossy { 0.0 } else { light * light };
+            }
         }
+        start(&mut batch, paths, world, view, Estimand::Pixels, 1);
+        let found = batch.trace(world, settings.max_depth, &mut all(), &mut counts);
+        sums[2] = found.map(|light| finite(light).sqrt()).sum::<f64>();
+        (sums, counts)
+    };
+    let found: Vec<([f64; 4], RayCounts)> =
+        (0..PATHS / BATCH).into_par_iter().one_by_one().map(|batch| sums_of(batch * BATCH)).collect();
+    let mut sums = [0.0; 4];
+    for (of_batch, traced) in found {
+        sums.iter_mut().zip(of_batch).for_each(|(sum, of_batch)| *sum += of_batch);
+        counts.rays += traced.rays;
+        counts.shadow_rays += traced.shadow_rays;
     }
-    start(&mut batch, paths, world, view, Estimand::Pixels, 1);
-    let found = batch.trace(world, settings.max_depth, &mut all(), &mut counts);
-    sums[2] = found.map(|light| finite(light).sqrt()).sum::<f64>();
-    (sums, counts)
+    let [by_delta, by_all, roots, squares] = sums.map(|sum| sum / f64::from(PATHS));
+    let share = |light: f64| (light / (light + roots * roots).max(f64::MIN_POSITIVE)) as f32;
+    let guided = share(by_delta);
+    let is_chance = f64::from(PATHS) * by_delta * by_delta < MIN_PATHS * squares;
+    if has_delta_lobes && guided >= MIN_SHARE && !is_chance {
+        edges.guided = MAX_GUIDED * guided / (guided + HALF_MAX_SHARE);
+    }
+    edges.blind = (share(by_all) / ALL_BLIND_SHARE).clamp(MIN_BLIND, 1.0);
+    edges
 }

@@ -9,15 +9,11 @@ use base::sampling::{Sampler, hash, owen_sobol_2d};
 use embree::Rays16;
 use glam::Vec3;
 use rayon::prelude::*;
-use world::World;
 use world::light::{EmitterObservations, EnvironmentLight, Learned, Receivers16, SkyObservations};
 use world::shadow;
 
 /// Maximum number of eye paths.
-pub(super) const MAX_PATHS: u32 = 16384;
-
-/// Minimum number of eye paths.
-const MIN_PATHS: u32 = 64;
+const MAX_PATHS: u32 = 16384;
 
 /// Number of film pixels per eye path.
 const PIXELS_PER_PATH: u64 = 8;
@@ -37,43 +33,10 @@ const LAMP_SEED: u32 = 0x51ed_270b;
 /// Step from one ray's tile to the next, coprime to the number of tiles.
 const STRIDE: usize = 97;
 
-/// Rays to emitters from points that views see.
-#[derive(Default)]
-pub(super) struct Looks {
-    sky: SkyObservations,
-    lamps: EmitterObservations,
-    /// Rays traced.
-    pub(super) chains: EyeCounts,
-}
-
-impl Looks {
-    /// Adds the rays of others behind these.
-    pub(super) fn append(&mut self, mut others: Looks) {
-        self.chains += others.chains;
-        self.sky.points.append(&mut others.sky.points);
-        self.sky.rays.append(&mut others.sky.rays);
-        self.lamps.points.append(&mut others.lamps.points);
-        self.lamps.rays.append(&mut others.lamps.rays);
-    }
-
-    /// Learns from all rays.
-    pub(super) fn learn(&self, world: &World) -> Learned {
-        let emitters = &world.emitters;
-        Learned {
-            sky: emitters.environment.as_ref().map(|environment| environment.learn(&self.sky)),
-            emitters: emitters.learn_emitters(&self.lamps),
-        }
-    }
-}
-
-/// Returns the number of paths for a film, `fewer` times fewer than for an image.
-pub(super) fn path_count(film: [u32; 2], fewer: u32) -> u32 {
+/// Returns the film pixels through which paths go: `fewer` times fewer than for a full image.
+fn places(film: [u32; 2], fewer: u64) -> Vec<[u32; 2]> {
     let pixels = u64::from(film[0]) * u64::from(film[1]);
-    ((pixels / PIXELS_PER_PATH).min(MAX_PATHS.into()) as u32 / fewer).max(MIN_PATHS)
-}
-
-/// Returns the film pixels through which `count` paths go.
-fn places(film: [u32; 2], count: u32) -> Vec<[u32; 2]> {
+    let count = ((pixels / PIXELS_PER_PATH).min(MAX_PATHS.into()) / fewer).max(64) as u32;
     let place = |i| {
         let at = owen_sobol_2d(i, RAY_SEED);
         [0, 1].map(|axis| ((at[axis] * film[axis] as f32) as u32).min(film[axis] - 1))
@@ -82,9 +45,9 @@ fn places(film: [u32; 2], count: u32) -> Vec<[u32; 2]> {
 }
 
 impl Tracer<'_, '_> {
-    /// Looks at emitters from the ends of `count` paths, and of fewer if cancelled. Returns `None` if there is
-    /// nothing to learn.
-    pub(super) fn look(&self, seed: u32, count: u32) -> Option<Looks> {
+    /// Learns from one path through each of the pilot's pixels, and from fewer if cancelled. Returns the rays too, or
+    /// `None` if there is nothing to learn. The number of paths is `fewer` times smaller than for a full image.
+    pub(super) fn learn(&self, seed: u32, fewer: u64) -> Option<(Learned, EyeCounts)> {
         let emitters = &self.world.emitters;
         let (environment, lamps) = (emitters.environment.as_ref(), emitters.may_hide());
         if environment.is_none() && !lamps {
@@ -94,7 +57,7 @@ impl Tracer<'_, '_> {
         let look = |(chunk, pixels): (usize, &[[u32; 2]])| {
             let (mut sky, mut seen) = (SkyObservations::default(), EmitterObservations::default());
             if self.control.is_cancelled() {
-                return Looks::default();
+                return (sky, seen, EyeCounts::default());
             }
             let mut points = 0;
             let each = |found: PixelSamples<'_, '_>, _: &mut Vec<_>| {
@@ -115,13 +78,25 @@ impl Tracer<'_, '_> {
             };
             let mut chains = works.with(|work| self.sample(pixels, 0..1, seed, work, each));
             chains.shadow_rays += (sky.rays.len() + seen.rays.iter().flatten().count()) as u64;
-            Looks { sky, lamps: seen, chains }
+            (sky, seen, chains)
         };
-        let places = places(self.view.window.film, count);
-        let found: Vec<Looks> = places.par_chunks(CHUNK).one_by_one().enumerate().map(look).collect();
-        let mut all = Looks::default();
-        found.into_iter().for_each(|looks| all.append(looks));
-        Some(all)
+        let places = places(self.view.window.film, fewer);
+        let found: Vec<(SkyObservations, EmitterObservations, EyeCounts)> =
+            places.par_chunks(CHUNK).one_by_one().enumerate().map(look).collect();
+        let (mut all, mut seen, mut chains) =
+            (SkyObservations::default(), EmitterObservations::default(), EyeCounts::default());
+        for (mut looks, mut lamp_looks, traced) in found {
+            chains += traced;
+            all.points.append(&mut looks.points);
+            all.rays.append(&mut looks.rays);
+            seen.points.append(&mut lamp_looks.points);
+            seen.rays.append(&mut lamp_looks.rays);
+        }
+        let learned = Learned {
+            sky: environment.map(|environment| environment.learn(&all)),
+            emitters: emitters.learn_emitters(&seen),
+        };
+        Some((learned, chains))
     }
 
     /// Traces rays from a point with the given shading and geometric normals to lamps, chosen as without learning.

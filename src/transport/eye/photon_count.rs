@@ -48,7 +48,7 @@ impl EyePass<'_> {
             light_samples,
             control,
         };
-        let squares = adaptive::pilot(view.window.film, adaptive::square_count(view.window.film));
+        let squares = adaptive::pilot(view.window.film);
         let pixels = squares.iter().map(|square| square.film_pixels().collect()).collect();
         let (_, found) = tracer.luminances(pixels, settings.seed ^ SEED, None);
         let mean = found.iter().map(|square| square.light).sum::<f64>() / found.len().max(1) as f64;

@@ -1,10 +1,9 @@
 //! Pilot of the eye pass with direct light: some pixels are sampled twice, independently. Plans estimate the noise of
 //! the pass from the differences.
 
-use super::guide::GuidePaths;
-use super::learn::path_count;
 use super::tracer::Tracer;
 use super::{EyeCounts, EyePass, EyeSettings, LightSources};
+use crate::paths::RayCounts;
 use base::progress::Control;
 use world::World;
 use world::view::View;
@@ -13,7 +12,7 @@ use world::view::View;
 const SEEDS: [u32; 2] = [0x7ab3_11d5, 0x0c94_e2f7];
 
 /// Divisor of the number of paths that learn emitters, since few pixels need less accuracy.
-const PATH_DIVISOR: u32 = 4;
+const PATH_DIVISOR: u64 = 4;
 
 /// Light that photons find in a pixel.
 #[derive(Clone, Copy, Debug, Default)]
@@ -46,18 +45,16 @@ impl EyePass<'_> {
         groups: &[Vec<[u32; 2]>],
         control: &Control,
     ) -> EyePilot {
-        let mut tracer = Tracer::new(world, view, settings, sources, control);
-        let paths = tracer.guide_paths(GuidePaths::FOR_VIEW);
-        tracer.edges = paths.edges(world);
-        let looks = tracer.look(settings.seed, path_count(view.window.film, PATH_DIVISOR));
-        let mut learned = looks.as_ref().map_or(EyeCounts::default(), |looks| looks.chains);
-        learned.rays += paths.rays.rays;
-        learned.shadow_rays += paths.rays.shadow_rays;
-        let emitters = looks.map(|looks| looks.learn(world));
+        let mut counts = RayCounts::default();
+        let tracer = Tracer::new(world, view, settings, sources, control, &mut counts);
+        let found = tracer.learn(settings.seed, PATH_DIVISOR);
+        let mut learned = found.as_ref().map_or(EyeCounts::default(), |(_, chains)| *chains);
+        learned.rays += counts.rays;
+        learned.shadow_rays += counts.shadow_rays;
+        let emitters = found.as_ref().map(|(learned, _)| learned);
         let mut traced = vec![EyeCounts::default(); groups.len()];
         let luminances = SEEDS.map(|seed| {
-            let (values, chains) =
-                tracer.luminances(groups.to_vec(), settings.seed ^ seed, emitters.as_ref());
+            let (values, chains) = tracer.luminances(groups.to_vec(), settings.seed ^ seed, emitters);
             traced.iter_mut().zip(chains).for_each(|(sum, chains)| *sum += chains);
             values.into_iter().map(|group| group.into_iter().map(|[mean, _]| mean).collect()).collect()
         });

@@ -3,10 +3,9 @@
 use super::caustic_lookups::CausticLookups;
 use super::direct_sampling::{DirectSampling, LightSources};
 use super::first_hits::FirstHits;
-use super::guide::GuidePaths;
 use super::guides::{FirstSurfaces, Guide};
 use super::merge::{MergedPoint, MergedPoints};
-use super::{EyeCounts, EyeSettings, FeatureSettings};
+use super::{EyeCounts, EyeSettings, FeatureSettings, guide};
 use crate::caustics::Caustics;
 use crate::paths::{Batch, Estimand, LightSamples, PathStart, RayCounts, ScatteredEdges, start};
 use base::math::{LANES, Rgb, luminance};
@@ -127,23 +126,21 @@ pub(super) fn traced_together(samples: u32) -> usize {
 }
 
 impl<'a, 'w> Tracer<'a, 'w> {
-    /// Creates a tracer without guiding.
+    /// Creates a tracer whose scattered edges are guided as a pilot finds best; adds the pilot's rays to `counts`.
     pub(super) fn new(
         world: &'w World,
         view: &'a View,
         settings: EyeSettings,
         sources: LightSources<'a>,
         control: &'a Control,
+        counts: &mut RayCounts,
     ) -> Tracer<'a, 'w> {
         let LightSources { direct, caustics } = sources;
         let (edges, light_samples) = (ScatteredEdges::default(), LightSamples::ONE);
-        Tracer { world, view, settings, direct, caustics, edges, light_samples, control }
-    }
-
-    /// Traces paths that tell how scattered edges are guided best.
-    pub(super) fn guide_paths(&self, count: u32) -> GuidePaths {
-        let all = || self.workspace(None).ends;
-        GuidePaths::trace(self.world, self.view, self.settings, all, self.caustics, count)
+        let mut tracer = Tracer { world, view, settings, direct, caustics, edges, light_samples, control };
+        let all = || tracer.workspace(None).ends;
+        tracer.edges = guide::edges(world, view, settings, all, caustics, counts);
+        tracer
     }
 
     pub(super) fn workspace<'b>(&'b self, learned: Option<&'b Learned>) -> TracerWorkspace<'b, 'w> {

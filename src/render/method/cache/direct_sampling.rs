@@ -19,6 +19,5 @@ pub fn direct_sampling(
         extra_samples: ExtraSamples { most: settings.extra_samples, other_rays },
         settled,
         guides: false,
-        pilots: None,
     })
 }

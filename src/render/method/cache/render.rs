@@ -11,7 +11,6 @@ use crate::method::renderer::{FormerFrames, Noisy, Pilots, Renderer, Walks};
 use crate::method::sampled_pixels::{PILOT_SPP, SampledPixels};
 use crate::method::sampling::{HasSampling, method_settings};
 use crate::method::scale::{CUTS, Demand, Move, SAMPLED, ScaledSetting, Scales};
-use crate::method::shared_pilots::SharedPilots;
 use crate::method::tally::Tally;
 use base::film::Window;
 use base::progress::Control;
@@ -67,8 +66,6 @@ struct FrameInputs<'a> {
     kept: Option<&'a mut RetainedRecords>,
     /// Surfaces that virtual lights are made for.
     lit: LitSurfaces<'a>,
-    /// Pilots that the views of a list share.
-    pilots: Option<&'a SharedPilots>,
     /// True for a frame of a film, whose noise must not flicker and whose guides are computed before.
     is_film: bool,
     /// Pixels whose direct light is reprojected.
@@ -93,7 +90,6 @@ impl Settings {
             cache: self.record_settings(),
             kept: None,
             lit: LitSurfaces::InView,
-            pilots: None,
             is_film: false,
             settled: Settled::default(),
             thresholds: None,
@@ -106,12 +102,11 @@ impl Settings {
         if let Some(outlook) = outlook {
             let lit = LitSurfaces::Seen(&outlook.points);
             let cache = self.record_settings().for_views(outlook.overlap, self.cut.epsilon);
-            let pilots = Some(&outlook.pilots);
-            return FrameInputs { cache, kept: Some(records), lit, pilots, ..self.still(view) };
+            return FrameInputs { cache, kept: Some(records), lit, ..self.still(view) };
         }
         let cache = self.record_settings().for_walk();
         let (kept, lit) = (Some(records), LitSurfaces::All);
-        FrameInputs { cache, kept, lit, pilots: None, is_film: true, settled, thresholds, other_rays: None }
+        FrameInputs { cache, kept, lit, is_film: true, settled, thresholds, other_rays: None }
     }
 
     /// Returns the settings of the shading stage for an image whose pixels have this relative variance.
@@ -130,13 +125,13 @@ impl Settings {
         view: &View,
         control: &Control,
     ) -> Output {
-        let FrameInputs { cache, mut kept, lit, pilots, is_film, settled, thresholds, other_rays } = inputs;
+        let FrameInputs { cache, mut kept, lit, is_film, settled, thresholds, other_rays } = inputs;
         let vantage = if is_film { Vantage::in_film(view) } else { Vantage::of(view) };
         let glossy = Glossy::new(world, &cache);
         let direct = direct_sampling(glossy.as_ref(), &cache, settled, other_rays);
         let direct = direct.map(|direct| DirectSampling { guides: !is_film, ..direct });
         let (sampling, family) = (self.sampling(), self.family);
-        let preparation = Preparation { sampling, direct, lights: self.light, family, lit, pilots };
+        let preparation = Preparation { sampling, direct, lights: self.light, family, lit };
         let Prepared { eye, lights, mut tally } = Prepared::new(world, lights, view, &preparation, control);
         let context = ShadingContext::new(world, &lights, self.compensation);
 

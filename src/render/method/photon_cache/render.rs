@@ -194,8 +194,7 @@ impl Renderer for Settings {
         let other_rays = PRICES.rays_beside_samples(pixels, self.spp.into(), self.photons.into());
         let direct = direct_sampling(glossy.as_ref(), &cache, Settled::default(), Some(other_rays));
         let (sampling, family) = (self.sampling(), self.family);
-        let preparation =
-            Preparation { sampling, direct, lights: self.light, family, lit: LitSurfaces::All, pilots: None };
+        let preparation = Preparation { sampling, direct, lights: self.light, family, lit: LitSurfaces::All };
         let Prepared { eye, lights, mut tally } = Prepared::new(world, lights, view, &preparation, control);
         let direct = LightcutSource { context: ShadingContext::new(world, &lights, true), settings: &cache };
 

@@ -56,7 +56,6 @@ impl Renderer for Settings {
             lights: self.light,
             family: self.family,
             lit: LitSurfaces::InView,
-            pilots: None,
         };
         let Prepared { eye, lights, mut tally } = Prepared::new(world, lights, view, &preparation, control);
         let tasks: Vec<ShadingTask> = (0..eye.len() as u32).map(ShadingTask::all).collect();
