@@ -21,10 +21,20 @@ pub struct AreaLight {
     /// Maximum radiance of any channel at any point, if the mesh were opaque.
     greatest: f32,
     triangles: DiscreteDistribution,
-    /// First corner, two edges and unit normal of each triangle.
-    shapes: Vec<[Vec3; 4]>,
+    shapes: Vec<TriangleShape>,
     /// Factor that varies over the mesh, if there is one.
     factor: Option<EmissionFactor>,
+}
+
+/// A triangle of an area light.
+#[derive(Clone, Copy, Debug)]
+pub struct TriangleShape {
+    /// First corner.
+    pub corner: Vec3,
+    /// Edges from the first corner to the others.
+    pub edges: [Vec3; 2],
+    /// Unit normal.
+    pub normal: Vec3,
 }
 
 /// A point on an area light.
@@ -96,7 +106,7 @@ impl AreaLight {
             shapes: (0..mesh.triangles.len())
                 .map(|t| {
                     let [a, b, c] = mesh.corners(t);
-                    [a, b - a, c - a, shapes[t].0]
+                    TriangleShape { corner: a, edges: [b - a, c - a], normal: shapes[t].0 }
                 })
                 .collect(),
         })
@@ -105,7 +115,7 @@ impl AreaLight {
     /// Samples a point uniformly by area; density 1/area.
     #[inline]
     pub fn sample(&self, u: Vec2) -> AreaPoint {
-        let (triangle, [corner, e1, e2, normal], u) = self.choose_triangle(u);
+        let (triangle, TriangleShape { corner, edges: [e1, e2], normal }, u) = self.choose_triangle(u);
         let barycentric = uniform_triangle(u);
         AreaPoint {
             triangle,
@@ -118,7 +128,7 @@ impl AreaLight {
     /// Chooses a triangle in proportion to its area. Returns its index, its first corner, the edges from there and the
     /// unit normal, and random numbers to choose a point on it.
     #[inline]
-    pub(super) fn choose_triangle(&self, u: Vec2) -> (u32, [Vec3; 4], Vec2) {
+    pub(super) fn choose_triangle(&self, u: Vec2) -> (u32, TriangleShape, Vec2) {
         let (triangle, rest) = self.triangles.sample(u.x);
         (triangle as u32, self.shapes[triangle], Vec2::new(rest, u.y))
     }
@@ -135,8 +145,8 @@ impl AreaLight {
         (emitted / self.greatest).min(Rgb::ONE)
     }
 
-    /// Returns first corner, two edges and unit normal of each triangle.
-    pub(super) fn shapes(&self) -> &[[Vec3; 4]] {
+    /// Returns all triangles.
+    pub(super) fn shapes(&self) -> &[TriangleShape] {
         &self.shapes
     }
 

@@ -28,6 +28,7 @@ mod tests;
 mod tree;
 mod triangles;
 
+use area::TriangleShape;
 pub use area::{AreaLight, AreaPoint};
 pub use delta::DeltaEmitter;
 pub use direct::{DirectSample, DirectSamples16};

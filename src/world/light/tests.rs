@@ -216,7 +216,11 @@ fn the_mean_of_direct_light_is_the_sum_over_all_emitters() {
         while points < 12.0 {
             // Away from the lamps, where the plain sum over points on them has converged.
             let (x, n) = receiver(&scene, &mut sampler);
-            if emitters.areas.iter().any(|light| x.distance(light.shapes()[0][0]) < 5.0 * light.area.sqrt()) {
+            if emitters
+                .areas
+                .iter()
+                .any(|light| x.distance(light.shapes()[0].corner) < 5.0 * light.area.sqrt())
+            {
                 continue;
             }
             let all = 0..=emitters.environment_index() as usize;

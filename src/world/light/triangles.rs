@@ -2,7 +2,7 @@
 //!
 //! Lanes that have chosen one light, or one of its triangles, are set together by masks.
 
-use super::area::AreaLight;
+use super::area::{AreaLight, TriangleShape};
 use super::direct::DirectSamples16;
 use base::math::{F32x16, LANES, U32x16, Vec2x16, Vec3x16, bits_of, blend, blend_u32, lanes_in, lanes_with};
 use base::sampling::uniform_triangle;
@@ -48,7 +48,7 @@ impl Triangles16 {
             let triangle = index[left.trailing_zeros() as usize];
             let here = left & lanes_with(&index, triangle);
             left &= !here;
-            let [corner, e1, e2, normal] = light.shapes()[triangle as usize];
+            let TriangleShape { corner, edges: [e1, e2], normal } = light.shapes()[triangle as usize];
             if here == u16::MAX {
                 (self.corner, self.normal) = (Vec3x16::splat(corner), Vec3x16::splat(normal));
                 self.edges = [Vec3x16::splat(e1), Vec3x16::splat(e2)];
@@ -65,7 +65,7 @@ impl Triangles16 {
     /// Chooses a triangle of a light for a lane, by the random numbers `u`.
     #[inline]
     fn set(&mut self, lane: usize, light: &AreaLight, u: Vec2) {
-        let (triangle, [corner, e1, e2, normal], u) = light.choose_triangle(u);
+        let (triangle, TriangleShape { corner, edges: [e1, e2], normal }, u) = light.choose_triangle(u);
         self.corner.set(lane, corner);
         self.edges[0].set(lane, e1);
         self.edges[1].set(lane, e2);

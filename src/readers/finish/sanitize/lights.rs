@@ -26,7 +26,9 @@ pub(super) fn check_lights(
     scene.discs.retain(|disc| disc.radiance != Rgb::ZERO);
     let textures = &scene.textures;
     let is_dark_image = |id: TextureId| textures.by_id(id).is_some_and(is_dark_texture);
-    draft.lights.retain(|(light, _)| power(light) != Rgb::ZERO && !image(light).is_some_and(is_dark_image));
+    draft
+        .lights
+        .retain(|(light, _)| intensity(light) != Rgb::ZERO && !image(light).is_some_and(is_dark_image));
     report.black_lights += before - draft.lights.len() - scene.discs.len();
     if let Some(environment) = &mut scene.environment
         && is_dark(environment, &place, report)?
@@ -45,8 +47,8 @@ fn check_light(light: Rgb, what: &str, place: &Location) -> Result<(), SceneErro
     }
 }
 
-/// Returns the intensity or irradiance of a light.
-fn power(light: &DeltaLight) -> Rgb {
+/// Returns the intensity of a light, or the irradiance of a distant one.
+fn intensity(light: &DeltaLight) -> Rgb {
     match light {
         DeltaLight::Point { intensity, .. } | DeltaLight::Spot { intensity, .. } => *intensity,
         DeltaLight::Projector { projector, .. } => projector.intensity,
@@ -90,13 +92,13 @@ fn check_emitters(draft: &mut Draft, report: &mut SanitizeReport) -> Result<(), 
 fn check_delta_lights(draft: &Draft, coordinates: &LocalCoordinates) -> Result<(), SceneError> {
     let place = draft.main_file();
     for (light, position) in &draft.lights {
-        check_light(power(light), "a light's intensity", &place)?;
+        check_light(intensity(light), "a light's intensity", &place)?;
         if !is_within_reach(*position, coordinates) {
             return Err(place.wrong(format!("a light stands at {position}"), IN_REACH));
         }
         let falls_off = !matches!(light, DeltaLight::Directional { .. });
-        if falls_off && !coordinates.local_intensity(power(light)).is_finite() {
-            let what = format!("a light's intensity {} overflows in its scene", power(light));
+        if falls_off && !coordinates.local_intensity(intensity(light)).is_finite() {
+            let what = format!("a light's intensity {} overflows in its scene", intensity(light));
             return Err(place.wrong(what, "scale the scene up, or the light down"));
         }
     }

@@ -1,7 +1,7 @@
 //! Extent, directions and power of emitters and of sets of emitters.
 
 use super::cone::{EmissionCone, angle_between};
-use crate::light::{AreaLight, DeltaEmitter};
+use crate::light::{AreaLight, DeltaEmitter, TriangleShape};
 use base::math::{Rgb, luminance};
 use glam::Vec3;
 use scene::DeltaLight;
@@ -31,14 +31,14 @@ impl EmitterBounds {
         let (mut low, mut high) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
         // Sum of the triangles' normals times their areas.
         let mut facing = Vec3::ZERO;
-        for [corner, e1, e2, _] in light.shapes() {
+        for TriangleShape { corner, edges: [e1, e2], .. } in light.shapes() {
             for position in [*corner, corner + e1, corner + e2] {
                 (low, high) = (low.min(position), high.max(position));
             }
             facing += 0.5 * e1.cross(*e2);
         }
         let axis = facing.normalize_or_zero();
-        let spread = light.shapes().iter().map(|shape| angle_between(axis, shape[3])).fold(0.0, f32::max);
+        let spread = light.shapes().iter().map(|shape| angle_between(axis, shape.normal)).fold(0.0, f32::max);
         let directed = !light.emission.two_sided && axis != Vec3::ZERO;
         let cone = EmissionCone { axis, normals: spread, emission: FRAC_PI_2 };
         // A surface that emits evenly into all directions has a quarter of a flat emitter's peak intensity.
