@@ -19,7 +19,7 @@ pub struct ViewsArgs {
     /// of a built-in scene
     pub scene: PathBuf,
     /// Cameras in the coordinates of the scene: the transforms.json of a NeRF data set, or a TOML list. A glTF model
-    /// (.glb, .gltf) stands for all of its cameras
+    /// (.glb, .gltf) or a Mitsuba scene (.xml) stands for all of its cameras
     pub cameras: PathBuf,
     /// Folder of the images. The name of an image is its `file_path` in the list, or the name of its camera
     #[arg(short, long, value_name = "FOLDER")]

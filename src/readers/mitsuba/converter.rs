@@ -6,7 +6,7 @@ use crate::file::folder_of;
 use crate::plan::Contents;
 use glam::DMat4;
 use scene::MaterialId;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
 /// A plan under construction. The other modules add what an object describes.
@@ -25,6 +25,23 @@ pub(super) struct Converter<'a> {
     pub groups: Vec<(Rc<Object>, usize)>,
     /// Number of the group whose meshes are being read.
     pub into_group: Option<usize>,
+}
+
+impl<'a> Converter<'a> {
+    /// Returns an empty plan for the description at `path`.
+    pub fn new(document: &'a SceneXml, path: &Path, log: &'a mut Log) -> Converter<'a> {
+        Converter {
+            document,
+            folder: folder_of(path).to_owned(),
+            log,
+            contents: Contents::default(),
+            material_of: Vec::new(),
+            default_materials: [None; 2],
+            sources: Vec::new(),
+            groups: Vec::new(),
+            into_group: None,
+        }
+    }
 }
 
 impl Converter<'_> {

@@ -23,31 +23,29 @@ mod tree;
 mod value;
 mod xml_file;
 
+use crate::draft::DraftView;
 use crate::error::{Log, SceneError};
-use crate::file::{folder_of, stem_of};
+use crate::file::stem_of;
 use crate::options::LoadOptions;
-use crate::plan::{Contents, Motion, ScenePlan};
+use crate::plan::{Motion, ScenePlan};
 use converter::Converter;
 use integrator::IntegratorSettings;
 use std::path::Path;
 use tree::SceneXml;
 
+/// Reads the sensors of the description at `path` as a list of views. Its `$parameters` have their defaults.
+pub(super) fn read_views(path: &Path, log: &mut Log) -> Result<Vec<DraftView>, SceneError> {
+    let document = SceneXml::read(path, &[], log);
+    let document = log.conclude(document)?;
+    let views = Converter::new(&document, path, log).views();
+    log.conclude(views)
+}
+
 /// Reads the description at `path`.
 pub(super) fn read(path: &Path, options: &LoadOptions, log: &mut Log) -> Result<ScenePlan, SceneError> {
     let document = SceneXml::read(path, &options.parameters, log);
     let document = log.conclude(document)?;
-    let folder = folder_of(path).to_owned();
-    let mut converter = Converter {
-        document: &document,
-        folder,
-        log,
-        contents: Contents::default(),
-        material_of: Vec::new(),
-        default_materials: [None; 2],
-        sources: Vec::new(),
-        groups: Vec::new(),
-        into_group: None,
-    };
+    let mut converter = Converter::new(&document, path, log);
     converter.scene();
     let rest = converter.report_unused();
     converter.log.part(rest);

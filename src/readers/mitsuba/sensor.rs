@@ -3,7 +3,7 @@
 use super::converter::Converter;
 use super::statements::fate_of_plugin;
 use super::tree::Object;
-use crate::draft::{DraftCamera, Shot};
+use crate::draft::{DraftCamera, DraftView, Shot};
 use crate::error::{Location, SceneError};
 use crate::statements::Fate;
 use base::math::{right_of, unit};
@@ -30,6 +30,27 @@ impl Converter<'_> {
             let what = format!("there are {} sensors: {}", sensors.len(), names(&sensors));
             self.log.note(&second.place, what, "the first is used; choose another with --camera");
         }
+        let names = sensors.iter().map(|sensor| sensor.id.clone().unwrap_or_default()).collect();
+        Ok(Shot { names, ..self.shot_of(sensor)? })
+    }
+
+    /// Returns all sensors as a list of views.
+    pub(super) fn views(&mut self) -> Result<Vec<DraftView>, SceneError> {
+        let sensors = self.tagged(&self.document.root, "sensor")?;
+        let mut views = Vec::with_capacity(sensors.len());
+        for sensor in &sensors {
+            let Shot { camera, resolution, crop, .. } = self.shot_of(sensor)?;
+            if crop.is_some() {
+                self.log.note(&sensor.place, "the film has a crop", "views are whole films");
+            }
+            let name = sensor.id.clone().unwrap_or_default();
+            views.push(DraftView { name, is_path: false, camera, resolution: Some(resolution) });
+        }
+        Ok(views)
+    }
+
+    /// Returns the shot of a sensor, without the names of sensors.
+    fn shot_of(&mut self, sensor: &Object) -> Result<Shot, SceneError> {
         match sensor.plugin.as_str() {
             "perspective" | "thinlens" | "orthographic" => {}
             other => {
@@ -70,8 +91,7 @@ impl Converter<'_> {
         let camera = self.camera(&sensor.place, &to_world, projection)?;
         let camera = DraftCamera { tan_half_x, near, far, filter, ..camera };
         sensor.report_unused(self.log)?;
-        let names = sensors.iter().map(|sensor| sensor.id.clone().unwrap_or_default()).collect();
-        Ok(Shot { camera, names, fits: false, path: Vec::new(), resolution, crop })
+        Ok(Shot { camera, names: Vec::new(), fits: false, path: Vec::new(), resolution, crop })
     }
 
     /// Names what a sampler says besides noise. `--spp` gives the number of samples.

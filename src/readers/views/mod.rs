@@ -1,5 +1,5 @@
-//! Lists of cameras, each of which is a view of a scene: `transforms.json` of NeRF data sets, a list in TOML, and the
-//! cameras of a glTF model.
+//! Lists of cameras, each of which is a view of a scene: `transforms.json` of NeRF data sets, a list in TOML, the cameras
+//! of a glTF model, and the sensors of a Mitsuba scene.
 //!
 //! Cameras are in the coordinates of the scene's file. A list is read without the scene. [`ViewList::in_scene`]
 //! converts its cameras to the coordinates of a scene.
@@ -13,7 +13,7 @@ use crate::error::{Location, Log, SceneError, Warning};
 use crate::file::fnv1a;
 use crate::finish::sanitize::check_camera;
 use crate::local::LocalCoordinates;
-use crate::{gltf, native};
+use crate::{gltf, mitsuba, native};
 use scene::{Camera, MAX_FRAMES, Scene};
 use std::path::{Path, PathBuf};
 
@@ -48,10 +48,11 @@ impl ViewList {
             "json" => transforms::read(path, &mut log)?,
             "toml" => native::read_views(path)?,
             "glb" | "gltf" => gltf::read_views(path)?,
+            "xml" => mitsuba::read_views(path, &mut log)?,
             _ => {
                 let what = "this is no list of cameras";
-                let remedy =
-                    "name the transforms.json of a NeRF data set, a .toml list, or a .glb or .gltf model";
+                let remedy = "name the transforms.json of a NeRF data set, a .toml list, a .glb or .gltf model, or a \
+                              Mitsuba scene (.xml)";
                 return Err(place.wrong(what, remedy));
             }
         };

@@ -211,3 +211,33 @@ fn the_hash_follows_cameras_and_names_and_not_the_text() {
     assert_eq!(hash(&a), hash(&a.replace(' ', "\n")));
     assert!(hash(&a) != hash(&b) && hash(&a) != hash(&a.replace("\"a\"", "\"c\"")));
 }
+
+#[test]
+fn sensors_of_a_mitsuba_scene_are_views() {
+    let film = |width: u32, more: &str| {
+        format!(
+            "<film type=\"hdrfilm\"><integer name=\"width\" value=\"{width}\"/>\
+             <integer name=\"height\" value=\"6\"/>{more}</film>"
+        )
+    };
+    let sensor = |id: &str, x: f32, film: &str| {
+        format!(
+            "<sensor type=\"perspective\" {id}><float name=\"fov\" value=\"90\"/><transform name=\"to_world\">\
+             <lookat origin=\"{x}, 2, 3\" target=\"0, 2, 3\" up=\"0, 1, 0\"/></transform>{film}</sensor>"
+        )
+    };
+    let cropped = film(8, "<integer name=\"crop_width\" value=\"4\"/>");
+    let sensors = [sensor("id=\"front\"", 1.0, &film(12, "")), sensor("", -5.0, &cropped)].concat();
+    let read = |sensors: &str| list("s.xml", &format!("<scene version=\"3.0.0\">{sensors}</scene>"));
+    let found = read(&sensors).unwrap();
+    assert_eq!(found.file_names(), [Path::new("front"), Path::new("view_0002")]);
+    let views = cameras(&found);
+    assert_eq!(views.iter().map(|view| view.resolution).collect::<Vec<_>>(), [Some([12, 6]), Some([8, 6])]);
+    assert_eq!(views[0].camera.origin, Vec3::new(1.0, 2.0, 3.0));
+    assert!((views[0].camera.forward - Vec3::NEG_X).length() < 1e-6);
+    assert!((views[1].camera.forward - Vec3::X).length() < 1e-6);
+    assert!((views[0].camera.tan_half_x - 1.0).abs() < 1e-6);
+    let [warning] = found.warnings() else { panic!("{:?}", found.warnings()) };
+    assert!(warning.what.contains("crop"), "{warning:?}");
+    assert!(read("").unwrap_err().to_string().contains("no camera"));
+}
