@@ -1,5 +1,5 @@
-//! Lists of cameras, each of which is a view of a scene: `transforms.json` of NeRF data sets, a list in TOML, the cameras
-//! of a glTF model, and the sensors of a Mitsuba scene.
+//! Lists of cameras, each of which is a view of a scene: `transforms.json` of NeRF data sets, a list in TOML, the
+//! cameras of a glTF model, and the sensors of a Mitsuba scene.
 //!
 //! Cameras are in the coordinates of the scene's file. A list is read without the scene. [`ViewList::in_scene`]
 //! converts its cameras to the coordinates of a scene.
