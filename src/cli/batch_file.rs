@@ -213,7 +213,9 @@ impl JobEntry {
         let Command::Views(args) = self.command()? else { return Ok(vec![self]) };
         let (Some(size), None) = (args.chunk, args.only) else { return Ok(vec![self]) };
         // The check of the entry reports a list that cannot be read.
-        let Ok(list) = ViewList::read(&args.cameras, false) else { return Ok(vec![self]) };
+        let Ok(list) = ViewList::read(&args.cameras, &args.picture.reading.clone().options()) else {
+            return Ok(vec![self]);
+        };
         let (count, size) = (list.file_names().len(), size.get());
         let chunk = |first: usize| {
             let part = format!("{first}-{}", first.saturating_add(size - 1).min(count));

@@ -69,7 +69,8 @@ pub fn files(args: &ViewsArgs) -> Result<Vec<PathBuf>, Failure> {
 
 /// Reads the list.
 fn listed(args: &ViewsArgs) -> Result<ViewFiles, Failure> {
-    let list = ViewList::read(&args.cameras, args.picture.reading.strict).map_err(Failure::input)?;
+    let options = args.picture.reading.clone().options();
+    let list = ViewList::read(&args.cameras, &options).map_err(Failure::input)?;
     let views = ViewFiles { list, folder: args.output.clone(), exposes_each: args.exposure_per_view };
     match args.only.as_ref().map(FrameList::last).filter(|last| *last > views.count()) {
         Some(last) => Err(Failure::usage(anyhow!(

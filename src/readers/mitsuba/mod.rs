@@ -33,9 +33,13 @@ use integrator::IntegratorSettings;
 use std::path::Path;
 use tree::SceneXml;
 
-/// Reads the sensors of the description at `path` as a list of views. Its `$parameters` have their defaults.
-pub(super) fn read_views(path: &Path, log: &mut Log) -> Result<Vec<DraftView>, SceneError> {
-    let document = SceneXml::read(path, &[], log);
+/// Reads the sensors of the description at `path` as a list of views. `given` values replace defaults of `$parameters`.
+pub(super) fn read_views(
+    path: &Path,
+    given: &[(String, String)],
+    log: &mut Log,
+) -> Result<Vec<DraftView>, SceneError> {
+    let document = SceneXml::read(path, given, log);
     let document = log.conclude(document)?;
     let views = Converter::new(&document, path, log).views();
     log.conclude(views)

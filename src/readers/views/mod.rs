@@ -13,6 +13,7 @@ use crate::error::{Location, Log, SceneError, Warning};
 use crate::file::fnv1a;
 use crate::finish::sanitize::check_camera;
 use crate::local::LocalCoordinates;
+use crate::options::LoadOptions;
 use crate::{gltf, mitsuba, native};
 use scene::{Camera, MAX_FRAMES, Scene};
 use std::path::{Path, PathBuf};
@@ -36,19 +37,19 @@ pub struct SceneView {
 }
 
 impl ViewList {
-    /// Reads the list at `path`. If `strict`, warnings are errors.
+    /// Reads the list at `path`. Of the `options` of its scene, `strict` and, for a Mitsuba scene, `parameters` count.
     ///
     /// # Errors
     /// If the file cannot be read, is invalid, or has no camera.
-    pub fn read(path: &Path, strict: bool) -> Result<ViewList, SceneError> {
+    pub fn read(path: &Path, options: &LoadOptions) -> Result<ViewList, SceneError> {
         let place = Location::file(path);
         let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
-        let mut log = Log::new(strict);
+        let mut log = Log::new(options.strict);
         let views = match extension.as_str() {
             "json" => transforms::read(path, &mut log)?,
             "toml" => native::read_views(path)?,
             "glb" | "gltf" => gltf::read_views(path)?,
-            "xml" => mitsuba::read_views(path, &mut log)?,
+            "xml" => mitsuba::read_views(path, &options.parameters, &mut log)?,
             _ => {
                 let what = "this is no list of cameras";
                 let remedy = "name the transforms.json of a NeRF data set, a .toml list, a .glb or .gltf model, or a \

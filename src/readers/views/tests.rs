@@ -9,7 +9,7 @@ fn list(name: &str, text: &str) -> Result<ViewList, SceneError> {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join(name);
     fs::write(&path, text).unwrap();
-    ViewList::read(&path, false)
+    ViewList::read(&path, &LoadOptions::default())
 }
 
 fn nerf(text: &str) -> ViewList {
@@ -84,7 +84,12 @@ fn what_is_not_supported_is_named_once_and_zeros_are_not() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("t.json");
     fs::write(&path, frames("\"camera_angle_x\": 1, \"k1\": 1,", "")).unwrap();
-    assert!(ViewList::read(&path, true).unwrap_err().to_string().contains("k1"));
+    assert!(
+        ViewList::read(&path, &LoadOptions { strict: true, ..LoadOptions::default() })
+            .unwrap_err()
+            .to_string()
+            .contains("k1")
+    );
 }
 
 #[test]
@@ -240,4 +245,20 @@ fn sensors_of_a_mitsuba_scene_are_views() {
     let [warning] = found.warnings() else { panic!("{:?}", found.warnings()) };
     assert!(warning.what.contains("crop"), "{warning:?}");
     assert!(read("").unwrap_err().to_string().contains("no camera"));
+}
+
+#[test]
+fn parameters_of_a_mitsuba_scene_count_in_its_views() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("s.xml");
+    let sensor = "<sensor type=\"perspective\"><float name=\"fov\" value=\"$fov\"/></sensor>";
+    let text = format!("<scene version=\"3.0.0\"><default name=\"fov\" value=\"90\"/>{sensor}</scene>");
+    fs::write(&path, text).unwrap();
+    let tan = |parameters: &[(&str, &str)]| {
+        let parameters = parameters.iter().map(|(name, value)| ((*name).to_owned(), (*value).to_owned()));
+        let options = LoadOptions { parameters: parameters.collect(), ..LoadOptions::default() };
+        cameras(&ViewList::read(&path, &options).unwrap())[0].camera.tan_half_x
+    };
+    let given = tan(&[("fov", "60")]);
+    assert!((tan(&[]) - 1.0).abs() < 1e-6 && (given - 30f32.to_radians().tan()).abs() < 1e-6);
 }

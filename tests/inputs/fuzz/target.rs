@@ -137,7 +137,7 @@ impl Workplace {
 
     /// Reads a list of cameras, whose images stay below their folder.
     fn views(&self, list: &Path) {
-        let read = ViewList::read(list, false);
+        let read = ViewList::read(list, &LoadOptions::default());
         let placed = read.and_then(|list| {
             let is_below =
                 |name: &PathBuf| name.components().all(|part| matches!(part, Component::Normal(_)));
