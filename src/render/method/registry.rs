@@ -3,6 +3,7 @@
 use super::renderer::{Noisy, Pilots, Renderer, Resumes, Walks};
 use super::scale::{Demand, Scales};
 use super::{Estimand, LightStore, Output, Sampling, cache};
+use crate::denoise::effort::Sampled;
 use base::film::Window;
 use base::progress::Control;
 use base::setting::{Each, Parsed};
@@ -137,6 +138,11 @@ impl Method {
     /// True if renders return a denoiser's guides.
     pub fn finds_guides(&self) -> bool {
         self.as_noisy().is_some_and(Noisy::finds_guides)
+    }
+
+    /// Returns the light that is sampled.
+    pub fn sampled(&self) -> Sampled {
+        self.as_noisy().map_or(Sampled::Part, Noisy::sampled)
     }
 
     /// Makes renders return a denoiser's guides, if the method can.

@@ -6,6 +6,7 @@ use super::path::PartialImage;
 use super::sampled_pixels::SampledPixels;
 use super::sampling::HasSampling;
 use super::scale::Scales;
+use crate::denoise::effort::Sampled;
 use crate::method::Output;
 use base::film::{Image, Window};
 use base::progress::Control;
@@ -123,6 +124,11 @@ pub trait Noisy {
 
     /// True if renders return the denoiser's guides ([`Output::guides`]).
     fn finds_guides(&self) -> bool;
+
+    /// Returns the light that is sampled.
+    fn sampled(&self) -> Sampled {
+        Sampled::Part
+    }
 }
 
 /// A method that samples single pixels, so that a plan can measure its noise and its work.

@@ -90,11 +90,11 @@ impl<'a> Finish<'a> {
         self.denoiser().map(|denoiser| format!("{}{quality}", denoiser.name()))
     }
 
-    /// Returns the quality of denoising for an image.
-    fn quality(&self, output: &Output) -> Quality {
+    /// Returns the quality of denoising for an image of a method.
+    fn quality(&self, method: &Method, output: &Output) -> Quality {
         let pixels = self.view.window.pixel_count();
         let work = || ScenePrices::new(self.world.scene.seen_triangle_count()).time(&output.work);
-        self.quality.unwrap_or_else(|| effort::for_image(pixels, work()))
+        self.quality.unwrap_or_else(|| effort::for_image(pixels, work(), method.sampled()))
     }
 
     /// Returns the features that are kept or guide the denoiser.
@@ -148,7 +148,7 @@ impl<'a> Finish<'a> {
                 output.stats.time(Stage::EyePass, features)
             }
         };
-        self.apply_to_layers(layers, output)
+        self.apply_to_layers(method, layers, output)
     }
 
     /// Sharpens a complete image, its noisy layer and its variance, if the filter of the pixels asks for it.
@@ -168,17 +168,18 @@ impl<'a> Finish<'a> {
     }
 
     /// Adds features to an image, and denoises it, given the surfaces seen.
-    pub fn apply_to_seen(&self, seen: &SeenPixels, output: Output) -> Output {
-        self.apply_to_layers(seen.layers(self.world, self.wanted()), output)
+    pub fn apply_to_seen(&self, method: &Method, seen: &SeenPixels, output: Output) -> Output {
+        self.apply_to_layers(method, seen.layers(self.world, self.wanted()), output)
     }
 
-    fn apply_to_layers(&self, mut layers: Vec<Layer>, mut output: Output) -> Output {
+    fn apply_to_layers(&self, method: &Method, mut layers: Vec<Layer>, mut output: Output) -> Output {
         output.complete &= !self.control.is_cancelled();
         if !output.complete {
             return output;
         }
         if let Some(denoiser) = self.denoiser() {
-            self.denoise(denoiser, &layers, &mut output);
+            let quality = self.quality(method, &output);
+            self.denoise(denoiser, quality, &layers, &mut output);
         }
         let unwanted = [Feature::Albedo, Feature::Normal].into_iter().filter(|f| !self.features.contains(*f));
         for feature in unwanted {
@@ -188,10 +189,9 @@ impl<'a> Finish<'a> {
         output
     }
 
-    fn denoise(&self, denoiser: &Denoiser, layers: &[Layer], output: &mut Output) {
+    fn denoise(&self, denoiser: &Denoiser, quality: Quality, layers: &[Layer], output: &mut Output) {
         self.control.begin(Stage::Denoise, 0);
         output.nonfinite += output.color.remove_nonfinite();
-        let quality = self.quality(output);
         if self.is_last || self.view.window.pixel_count() > LARGE {
             give_back();
         }

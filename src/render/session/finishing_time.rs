@@ -48,7 +48,7 @@ impl FinishingTime {
         denoising *= all / part;
         if quality.is_none() {
             let looking = sample * all * f64::from(method.spp());
-            let likely = effort::for_work(within - looking - denoising, denoising);
+            let likely = effort::for_work(within - looking - denoising, denoising, method.sampled());
             denoising *= PRICES.denoising(likely);
         }
         FinishingTime { denoising, sample }

@@ -37,7 +37,7 @@ pub fn next_frame(context: &FrameContext, method: &Method, state: WalkState) -> 
     if let Some(reprojected) = reprojected {
         reprojected.mix_into(&mut output.color, &seen);
     }
-    let mut output = finish.apply_to_seen(&seen, output);
+    let mut output = finish.apply_to_seen(method, &seen, output);
     let is_denoised = matches!(output.denoised, Some(Ok(_)));
     if let Some(last) = last {
         last.replace(view, &seen, is_denoised.then_some(&output.color));

@@ -3,6 +3,7 @@
 use super::partial::PartialImage;
 use super::pixels::sample_pixels;
 use super::tile::{PASS, PathTile, TILE, TileInputs};
+use crate::denoise::effort::Sampled;
 use crate::method::Output;
 use crate::method::lights::LightStore;
 use crate::method::renderer::{Noisy, Pilots, Renderer, Resumes};
@@ -83,6 +84,10 @@ impl Noisy for Settings {
 
     fn finds_guides(&self) -> bool {
         self.guides
+    }
+
+    fn sampled(&self) -> Sampled {
+        Sampled::All
     }
 }
 
