@@ -186,6 +186,7 @@ impl Chooser {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::plan::ladder::{DRAFT, FINAL, PREVIEW};
 
     /// Creates a chooser for a film of 512 by 512, from variances and rays of sampled light and of paths.
     fn chooser(triangles: usize, variances: [f64; 2], rays: [f64; 2]) -> Chooser {
@@ -230,6 +231,15 @@ mod tests {
             assert!(!is_path(&choice) && choice.reason == Reason::NoTime, "{choice:?}");
         }
         assert_eq!(in_box().for_time(&ladder, 30.0, 0.1).reason, Reason::Work);
+    }
+
+    #[test]
+    fn drafts_of_a_calm_box_are_left_to_the_cache() {
+        let ladder = Ladder::new(Method::default(), &[]).unwrap();
+        for level in [DRAFT, PREVIEW, FINAL] {
+            let choice = in_box().as_good_as(&ladder.at(level));
+            assert!(!is_path(&choice) && choice.ahead > 1.3, "{level}: {choice:?}");
+        }
     }
 
     #[test]
