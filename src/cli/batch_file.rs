@@ -7,16 +7,16 @@
 use super::args::{Cli, Command};
 use super::exit::Failure;
 use super::walk_job::FIRST_POSE;
-use anyhow::{Context, anyhow};
+use anyhow::{Context, anyhow, bail};
+use base::file_kind::file_kind;
 use clap::error::{ContextKind, ContextValue};
-use readers::{EnvironmentChoice, LoadOptions, ViewList, read_regular};
+use readers::{EnvironmentChoice, LoadOptions, ViewList, read_regular, text_of};
 use render::walk::FileNames;
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::ffi::OsString;
 #[cfg(test)]
 use std::fs;
-use std::io;
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use toml::{Spanned, Table, Value};
@@ -111,13 +111,22 @@ fn of_command_line(error: &clap::Error) -> String {
     own.filter(|line| !line.is_empty()).collect::<Vec<_>>().join("; ")
 }
 
+/// Reads a text, which is in UTF-8 or UTF-16.
+fn text_file(path: &Path) -> anyhow::Result<String> {
+    let bytes = read_regular(path)?;
+    if let Some(kind) = file_kind(&bytes) {
+        bail!("this is {}; {}", kind.what, kind.remedy);
+    }
+    text_of(bytes).map_err(|line| anyhow!("line {line} is not UTF-8; save the file as text in UTF-8"))
+}
+
 /// Reads a job file. Its paths are relative to its folder. `more` are arguments of every entry.
 ///
 /// # Errors
 /// If the file cannot be read or is invalid.
 pub fn read(path: &Path, more: &[&str]) -> Result<Vec<JobEntry>, Failure> {
-    let text = read_regular(path).and_then(|bytes| String::from_utf8(bytes).map_err(io::Error::other));
-    let text = text.with_context(|| format!("cannot read {}", path.display())).map_err(Failure::input)?;
+    let text =
+        text_file(path).with_context(|| format!("cannot read {}", path.display())).map_err(Failure::input)?;
     let wrong = |error: toml::de::Error| {
         Failure::input(anyhow!("{}: {}", path.display(), error.to_string().trim_end()))
     };

@@ -4,6 +4,7 @@ use super::args::InfoArgs;
 use super::exit::Failure;
 use super::info_lists::{bounds, cameras, lights, unsupported};
 use super::{opened, talk};
+use base::shown::shown_line;
 use readers::{Loaded, SanitizeReport};
 use scene::{Requirements, Scene};
 use serde_json::{Value, json};
@@ -73,7 +74,12 @@ fn to_text(facts: &Value, repairs: &SanitizeReport) -> String {
     line("lights", counted(list(&facts["lights"]).iter().map(described)));
     line(
         "material names",
-        counted(list(&facts["material_names"]).iter().filter_map(Value::as_str).map(str::to_owned)),
+        counted(
+            list(&facts["material_names"])
+                .iter()
+                .filter_map(Value::as_str)
+                .map(|name| shown_line(name).into_owned()),
+        ),
     );
     let [low, high] = ["min", "max"].map(|corner| &facts["box"][corner]);
     if !low.is_null() {
@@ -85,7 +91,7 @@ fn to_text(facts: &Value, repairs: &SanitizeReport) -> String {
         }
         let shown = match key.as_str() {
             "repairs" => repairs.to_string(),
-            _ => value.as_str().map_or_else(|| value.to_string(), str::to_owned),
+            _ => value.as_str().map_or_else(|| value.to_string(), |text| shown_line(text).into_owned()),
         };
         line(key, shown);
     }
@@ -100,7 +106,7 @@ fn list(value: &Value) -> &[Value] {
 fn described(light: &Value) -> String {
     let kind = light["kind"].as_str().unwrap_or_default();
     match light["name"].as_str().filter(|name| !name.is_empty()) {
-        Some(name) => format!("{kind} ({name})"),
+        Some(name) => format!("{kind} ({})", shown_line(name)),
         None => kind.to_owned(),
     }
 }

@@ -1,6 +1,7 @@
 //! Lists of what a scene contains: cameras, lights, its box, and what is not supported.
 
 use super::opened::grouped;
+use base::shown::shown_line;
 use glam::{DVec3, Vec3};
 use readers::{Severity, Warning};
 use scene::{DeltaLight, Environment, Scene};
@@ -11,7 +12,7 @@ pub fn cameras(names: &Value) -> String {
     let names = names.as_array().map_or(&[][..], Vec::as_slice);
     let shown = |(i, name): (usize, &Value)| match name.as_str().unwrap_or_default() {
         "" => (i + 1).to_string(),
-        name => format!("{} ({name})", i + 1),
+        name => format!("{} ({})", i + 1, shown_line(name)),
     };
     match names {
         [] => "none; the whole scene is framed".to_owned(),

@@ -64,6 +64,7 @@ mod walk_job;
 mod walk_report;
 
 use args::{Cli, Command};
+use base::shown::shown;
 use exit::Failure;
 use std::ffi::OsString;
 use std::io;
@@ -75,6 +76,11 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     let cli = match Cli::of(arguments) {
         Ok(cli) => cli,
         Err(error) => {
+            let text = error.render().to_string();
+            if error.use_stderr() && shown(&text) != text {
+                talk::line(text.trim_end());
+                return ExitCode::from(exit::USAGE);
+            }
             // Help and version go to stdout with code 0, errors to stderr with code 2.
             let printed = error.print();
             return ExitCode::from(match printed {

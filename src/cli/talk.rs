@@ -6,6 +6,7 @@
 use super::exit::Failure;
 use super::values::{Loudness, ProgressMode};
 use anyhow::Context;
+use base::shown::shown;
 use serde_json::{Value, json};
 use std::io::{self, Write};
 use std::path::PathBuf;
@@ -97,9 +98,9 @@ pub fn event(kind: &str, fields: impl FnOnce() -> Value) {
     }
 }
 
-/// Writes a line. A closed stderr is no error.
+/// Writes a line. Characters that act on a terminal are escaped. A closed stderr is no error.
 pub fn line(text: &str) {
-    let _ = writeln!(io::stderr().lock(), "{text}");
+    let _ = writeln!(io::stderr().lock(), "{}", shown(text));
 }
 
 fn say(kind: &str, text: &str) {
@@ -111,9 +112,9 @@ fn say(kind: &str, text: &str) {
     }
 }
 
-/// Writes text to stdout. A reader that has closed the pipe (`| head`) is no error.
+/// Writes text to stdout. Characters that act on a terminal are escaped. A reader that has closed the pipe (`| head`) is no error.
 pub fn print(text: &str) -> Result<(), Failure> {
-    print_bytes(text.as_bytes())
+    print_bytes(shown(text).as_bytes())
 }
 
 /// Writes data to stdout. A reader that has closed the pipe is no error.

@@ -3,6 +3,8 @@
 //! Both name the file and, if possible, the line.
 
 use super::built_in;
+use base::file_kind::FileKind;
+use base::shown::shown_line;
 use std::collections::BTreeSet;
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -29,32 +31,42 @@ impl Location {
 
     /// Returns the error of a wrong value here.
     pub fn wrong(&self, what: impl Into<String>, remedy: impl Into<String>) -> SceneError {
-        SceneError::Value { place: self.clone(), what: what.into(), remedy: remedy.into() }
+        SceneError::Value { place: self.clone(), what: one_line(what), remedy: one_line(remedy) }
     }
 
     /// Returns the error of a name that is used here and not defined.
     pub fn undefined(&self, kind: &'static str, name: &str) -> SceneError {
-        SceneError::Reference { place: self.clone(), kind, name: name.to_owned() }
+        SceneError::Reference { place: self.clone(), kind, name: one_line(name) }
     }
 
     /// Returns the error of a requested camera that the scene lacks.
     pub(crate) fn no_camera(&self, name: &str, remedy: impl Into<String>) -> SceneError {
-        SceneError::Camera { place: self.clone(), name: name.to_owned(), remedy: remedy.into() }
+        SceneError::Camera { place: self.clone(), name: one_line(name), remedy: one_line(remedy) }
     }
 
     /// Returns the error of text that is not well-formed here.
     pub(crate) fn malformed(&self, message: impl Into<String>) -> SceneError {
-        SceneError::Syntax { place: self.clone(), message: message.into() }
+        SceneError::Syntax { place: self.clone(), message: one_line(message) }
     }
 }
 
 impl fmt::Display for Location {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         match self.line {
-            Some(line) => write!(f, "{}:{line}", self.path.display()),
-            None => write!(f, "{}", self.path.display()),
+            Some(line) => write!(f, "{}:{line}", shown_path(&self.path)),
+            None => f.write_str(&shown_path(&self.path)),
         }
     }
+}
+
+/// Returns a message as one line, without characters that act on a terminal.
+fn one_line(text: impl Into<String>) -> String {
+    shown_line(&text.into()).into_owned()
+}
+
+/// Returns the name of a file for messages.
+fn shown_path(path: &Path) -> String {
+    one_line(path.to_string_lossy())
 }
 
 /// Severity of a warning.
@@ -88,7 +100,7 @@ impl Warning {
 
 impl fmt::Display for Warning {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        write!(f, "{}: {}; {}", self.place, self.what, self.fallback)
+        f.write_str(&shown_line(&format!("{}: {}; {}", self.place, self.what, self.fallback)))
     }
 }
 
@@ -96,7 +108,7 @@ impl fmt::Display for Warning {
 #[derive(Debug, thiserror::Error)]
 pub enum SceneError {
     /// A file that cannot be opened or read.
-    #[error("{}cannot read {}: {error}; check the name and its permissions", asker(.from, .path), .path.display())]
+    #[error("{}cannot read {}: {error}; check the name and its permissions", asker(.from, .path), shown_path(.path))]
     Read {
         /// The file.
         path: PathBuf,
@@ -105,9 +117,24 @@ pub enum SceneError {
         /// Error of the operating system; no `source`, because the message contains it.
         error: std::io::Error,
     },
+    /// A file that is something else than its name says.
+    #[error("{}{}: this is {}; {}", asker(.from, .path), shown_path(.path), .kind.what, .kind.remedy)]
+    Foreign {
+        /// The file.
+        path: PathBuf,
+        /// Location of the reference to the file.
+        from: Location,
+        /// Kind of the file by its first bytes.
+        kind: FileKind,
+    },
     /// A file whose extension belongs to no supported format.
-    #[error("{}: {}", .0.display(), way_out(.0))]
-    UnknownFormat(PathBuf),
+    #[error("{}: {}", shown_path(.path), way_out(.path, .kind))]
+    UnknownFormat {
+        /// The file.
+        path: PathBuf,
+        /// Kind of the file by its first bytes.
+        kind: Option<FileKind>,
+    },
     /// Text that is not well-formed XML or TOML.
     #[error("{place}: {message}; correct the file's syntax")]
     Syntax {
@@ -155,7 +182,7 @@ pub enum SceneError {
         what: String,
     },
     /// An image that cannot be decoded.
-    #[error("{place}: cannot decode {}: {what}; convert it to PNG, JPEG, BMP, TGA, Radiance HDR or OpenEXR", .path.display())]
+    #[error("{place}: cannot decode {}: {what}; convert it to PNG, JPEG, BMP, TGA, Radiance HDR or OpenEXR", shown_path(.path))]
     Image {
         /// Location of the reference to the file.
         place: Location,
@@ -178,7 +205,10 @@ pub enum SceneError {
 }
 
 /// Returns what a file of an unknown format is, and how to get a scene from it.
-fn way_out(path: &Path) -> String {
+fn way_out(path: &Path, kind: &Option<FileKind>) -> String {
+    if let Some(kind) = kind.filter(FileKind::is_substitute) {
+        return format!("this is {}; {}", kind.what, kind.remedy);
+    }
     let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
     let from_blender =
         "export glTF 2.0 (.glb) from Blender, with Include > Cameras and Punctual Lights ticked";
@@ -200,17 +230,26 @@ fn way_out(path: &Path) -> String {
         "exr" | "png" | "jpg" | "jpeg" | "hdr" => {
             ("an image, not a scene", "name a scene, and an image for its light with --env".to_owned())
         }
-        "" => (
+        "json" if kind.is_none() => {
+            ("no scene", "name text of glTF .gltf, and give a list of cameras to `views`".to_owned())
+        }
+        "mtl" => ("a library of materials", "name the .obj file that uses it".to_owned()),
+        "serialized" => ("a mesh without a scene", "name a Mitsuba or TOML scene that uses it".to_owned()),
+        "off" => ("a mesh in the format OFF", "convert it to PLY or OBJ".to_owned()),
+        "" if kind.is_none() => (
             "neither a file with a known extension nor a built-in scene",
             format!(
                 "name a .glb, .gltf, .obj, .ply, .stl, .toml or .xml file, or one of {}",
                 built_in::names()
             ),
         ),
-        _ => (
-            "an unknown kind of scene",
-            "name a .glb, .gltf, .obj, .ply, .stl, .toml (native) or .xml (Mitsuba) file".to_owned(),
-        ),
+        _ => match kind {
+            Some(kind) => (kind.what, kind.remedy.to_owned()),
+            None => (
+                "an unknown kind of scene",
+                "name a .glb, .gltf, .obj, .ply, .stl, .toml (native) or .xml (Mitsuba) file".to_owned(),
+            ),
+        },
     };
     format!("this is {what}; {remedy}")
 }
@@ -244,7 +283,7 @@ impl SceneError {
 
     /// Returns the error of a wrong mesh file.
     pub fn mesh(place: Location, what: impl Into<String>) -> SceneError {
-        SceneError::Mesh { place, what: what.into() }
+        SceneError::Mesh { place, what: one_line(what) }
     }
 }
 

@@ -3,12 +3,17 @@
 use super::budget::lacking;
 use super::built_in;
 use super::error::{Location, SceneError};
-use std::fs;
-use std::io;
+use base::file_kind::{FileKind, file_kind, from_utf16};
+use std::fs::{self, File};
+use std::io::{self, Read};
 use std::path::Path;
 
 /// Memory per byte of a mesh file: its bytes, and the growing arrays of its content, old and new.
 const BYTES_PER_FILE_BYTE: u64 = 3;
+/// Bytes of a file that tell its kind.
+const HEAD: u64 = 1024;
+/// Extensions of files that are texts, or may be.
+const TEXTS: [&str; 9] = ["obj", "mtl", "stl", "ply", "toml", "xml", "json", "gltf", "spd"];
 
 /// Reads a file that `from` refers to, or a file of a built-in scene.
 pub(crate) fn read_file(path: &Path, from: &Location) -> Result<Vec<u8>, SceneError> {
@@ -21,7 +26,28 @@ pub(crate) fn read_file(path: &Path, from: &Location) -> Result<Vec<u8>, SceneEr
         let what = format!("reading it takes {lack}");
         return Err(Location::file(path).wrong(what, "divide or simplify it, or give more memory"));
     }
-    fs::read(path).map_err(fail)
+    let bytes = fs::read(path).map_err(fail)?;
+    let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
+    match file_kind(&bytes) {
+        Some(kind) if !kind.is_read_as(&extension) => {
+            Err(SceneError::Foreign { path: path.to_owned(), from: from.clone(), kind })
+        }
+        _ if TEXTS.contains(&extension.as_str()) => Ok(in_utf8(bytes)),
+        _ => Ok(bytes),
+    }
+}
+
+/// Returns the kind of a file that begins as files of a known kind.
+pub(crate) fn kind_of(path: &Path) -> Option<FileKind> {
+    regular_length(path).ok()?;
+    let mut head = Vec::new();
+    File::open(path).ok()?.take(HEAD).read_to_end(&mut head).ok()?;
+    file_kind(&head)
+}
+
+/// Returns a text in UTF-16 as UTF-8, and other bytes as they are.
+fn in_utf8(bytes: Vec<u8>) -> Vec<u8> {
+    from_utf16(&bytes).map_or(bytes, String::into_bytes)
 }
 
 /// Reads a regular file.
@@ -46,11 +72,34 @@ fn regular_length(path: &Path) -> io::Result<u64> {
 pub(crate) fn read_text(path: &Path, from: &Location) -> Result<(String, u64), SceneError> {
     let bytes = read_file(path, from)?;
     let hash = fnv1a(&bytes);
-    let text = String::from_utf8(bytes).map_err(|e| {
-        let line = e.as_bytes()[..e.utf8_error().valid_up_to()].iter().filter(|&&b| b == b'\n').count();
-        Location::line(path, line as u32 + 1).malformed("the text is not UTF-8")
+    let text = text_of(bytes).map_err(|line| {
+        Location::line(path, line).wrong("the text is not UTF-8", "save the file as text in UTF-8")
     })?;
     Ok((text, hash))
+}
+
+/// Returns the text in UTF-8, in UTF-16, or in Latin-1 if an XML declaration says so, with line ends of Unix in place
+/// of line ends of old Macintoshes.
+///
+/// # Errors
+/// The line from which on the bytes are no text.
+pub fn text_of(bytes: Vec<u8>) -> Result<String, u32> {
+    let text = String::from_utf8(in_utf8(bytes)).or_else(|error| {
+        let valid = error.utf8_error().valid_up_to();
+        let bytes = error.into_bytes();
+        match is_latin_1(&bytes) {
+            true => Ok(bytes.iter().copied().map(char::from).collect()),
+            false => Err(bytes[..valid].iter().filter(|&&b| b == b'\n').count() as u32 + 1),
+        }
+    })?;
+    Ok(if text.contains('\n') { text } else { text.replace('\r', "\n") })
+}
+
+/// True if the declaration of an XML file names the encoding Latin-1.
+fn is_latin_1(bytes: &[u8]) -> bool {
+    let end = bytes.iter().position(|&byte| byte == b'>').unwrap_or_default();
+    let declaration = String::from_utf8_lossy(&bytes[..end]).to_ascii_lowercase();
+    declaration.starts_with("<?xml") && ["iso-8859-1", "latin1"].iter().any(|name| declaration.contains(name))
 }
 
 /// Returns the folder of a file.

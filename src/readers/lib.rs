@@ -60,7 +60,7 @@ use std::path::Path;
 
 pub use built_in::{is_built_in, names as built_in_scenes};
 pub use error::{Location, SceneError, Severity, Warning};
-pub use file::{fnv1a, read_regular};
+pub use file::{fnv1a, read_regular, text_of};
 pub use finish::sanitize::SanitizeReport;
 pub use lighting::{EnvironmentChoice, Lighting, UpAxis};
 pub(crate) use mesh::smooth_normals;
@@ -117,7 +117,7 @@ pub fn load(path: &Path, options: &LoadOptions) -> Result<Loaded, SceneError> {
             options.no_choice(path)?;
             native::read_model(path, &extension, &mut log)?
         }
-        _ => return Err(SceneError::UnknownFormat(path.to_owned())),
+        _ => return Err(SceneError::UnknownFormat { path: path.to_owned(), kind: file::kind_of(path) }),
     };
     // Models for printing and from computer-aided design stand on z.
     let up = options.up.or((extension == "stl").then_some(UpAxis::Z));

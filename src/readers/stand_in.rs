@@ -24,6 +24,9 @@ pub(crate) fn warning(error: SceneError, place: &Location) -> Result<Warning, Sc
         SceneError::Read { path, error, .. } => {
             (format!("cannot read {}: {error}", path.display()), "check the name and its permissions")
         }
+        SceneError::Foreign { path, kind, .. } => {
+            (format!("{} is {}", path.display(), kind.what), kind.remedy)
+        }
         SceneError::Image { path, what, .. } => {
             let remedy = "convert it to PNG, JPEG, BMP, TGA, Radiance HDR or OpenEXR";
             (format!("cannot decode {}: {what}", path.display()), remedy)

@@ -6,6 +6,7 @@ use crate::exr_file::{
     ColourModel, ExrError, ExrSource, NoPicture, PartNames, PictureChannels, Primaries, from_luma_chroma,
     picture_channels,
 };
+use crate::file_kind::file_kind;
 use crate::film::Window;
 use crate::math::Rgb;
 use ::exr::meta::BlockDescription;
@@ -14,7 +15,7 @@ use ::exr::prelude::{
     AnyChannel, AnyChannels, AttributeValue, Blocks, Encoding, FlatImage, FlatSamples, Layer, Text, Vec2,
 };
 use std::fs::{self, File};
-use std::io::{self, BufReader};
+use std::io::{self, BufReader, Read};
 use std::path::{Path, PathBuf};
 
 /// Names of the colour channels of a layer, by preference, and their meaning.
@@ -24,6 +25,17 @@ const LAYER: [([&str; 3], ColourModel); 4] = [
     (["Y", "RY", "BY"], ColourModel::LumaChroma),
     (["Y"; 3], ColourModel::Luma),
 ];
+
+/// Returns what a file is that is no OpenEXR image, if its first bytes tell it.
+fn other_kind(path: &Path) -> Option<String> {
+    let mut head = Vec::new();
+    File::open(path).ok()?.take(1024).read_to_end(&mut head).ok()?;
+    let kind = file_kind(&head).filter(|_| !head.starts_with(&MAGIC))?;
+    Some(format!("it is {}; {}", kind.what, kind.remedy))
+}
+
+/// First bytes of an OpenEXR file.
+const MAGIC: [u8; 4] = [0x76, 0x2F, 0x31, 0x01];
 
 /// An OpenEXR file in memory.
 #[derive(Clone, Debug)]
@@ -48,7 +60,9 @@ impl ExrFile {
         let file = File::open(path).map_err(fail)?;
         let decode = |error: ExrError| match error {
             ExrError::Io(error) => fail(error),
-            ExrError::Content(reason) => ImageError::Decode { path: path.to_owned(), reason },
+            ExrError::Content(reason) => {
+                ImageError::Decode { path: path.to_owned(), reason: other_kind(path).unwrap_or(reason) }
+            }
         };
         let mut source = ExrSource::open(BufReader::new(file)).map_err(decode)?;
         check_memory(source.headers()).map_err(|reason| decode(ExrError::Content(reason)))?;

@@ -100,7 +100,7 @@ mod tests {
 
     #[test]
     fn an_empty_scene_has_a_camera_too() {
-        assert!(of("").cameras.still.origin.is_finite());
+        assert!(of("# nothing\n").cameras.still.origin.is_finite());
     }
 
     #[test]

@@ -177,7 +177,9 @@ impl XmlReader<'_> {
         }
         let (text, hash) = read_text(path, from)?;
         self.sources.push((path.to_owned(), hash));
-        let parsed = roxmltree::Document::parse(&text);
+        // Document types hold entities of small files. The library bounds what they expand to.
+        let options = roxmltree::ParsingOptions { allow_dtd: true, ..Default::default() };
+        let parsed = roxmltree::Document::parse_with_options(&text, options);
         let document = parsed.map_err(|e| Location::line(path, e.pos().row).malformed(e.to_string()))?;
         let file = &XmlFile::new(path, &text);
         let root = document.root_element();

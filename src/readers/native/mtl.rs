@@ -53,7 +53,17 @@ impl SceneBuilder<'_> {
         unit: f32,
         appearances: &mut BTreeMap<String, Appearance>,
     ) -> Result<(), SceneError> {
-        let bytes = read_file(file, from)?;
+        let bytes = match read_file(file, from) {
+            Err(SceneError::Foreign { kind, .. }) => {
+                let what = format!("the material library {} is {}", file.display(), kind.what);
+                return self.log.warn(
+                    from,
+                    what,
+                    format!("a grey of 0.5 is used for its materials; {}", kind.remedy),
+                );
+            }
+            read => read?,
+        };
         if !self.sources.iter().any(|s| s.0 == file) {
             self.sources.push((file.to_owned(), fnv1a(&bytes)));
         }

@@ -152,7 +152,7 @@ fn lists_in_toml_have_the_cameras_of_scenes() {
     let camera = "[[camera]]\norigin = [0, 0, 5]\ntarget = [0, 0, 0]\n";
     for (text, expected) in [
         ("camera = []", "no camera; add one"),
-        ("", "missing field `camera`; add it"),
+        ("# none", "missing field `camera`; add it"),
         (&format!("{camera}fow = 3"), "views.toml:4: unknown field `fow`"),
         (&format!("{camera}path = {{ keys = [] }}"), "unknown field `path`"),
         (&format!("{camera}fov = 200"), "fov is 200"),
