@@ -7,6 +7,8 @@ use scene::AttributeValues;
 
 /// Name of vertex colours.
 pub(crate) const VERTEX_COLOUR: &str = "vertex_color";
+/// Name of face colours.
+pub(crate) const FACE_COLOUR: &str = "face_color";
 /// Name of opacities of vertices.
 pub(crate) const VERTEX_ALPHA: &str = "vertex_alpha";
 /// Colours of vertices, or else of faces.

@@ -6,7 +6,8 @@ use crate::budget::TriangleBudget;
 use crate::decode::{Channel, DecodedImage};
 use crate::draft::Shot;
 use crate::error::{Location, SceneError};
-use crate::mesh::{Placement, RawMesh};
+use crate::file::read_file;
+use crate::mesh::{Placement, RawMesh, ply, stl};
 use crate::selection::PartSelection;
 use crate::sky::SkyPlan;
 use base::math::Rgb;
@@ -201,6 +202,20 @@ pub enum MeshSource {
     Ready(RawMesh),
     /// Mesh that other plans place, too.
     Shared(Arc<RawMesh>),
+}
+
+impl MeshSource {
+    /// Returns true if the file of a PLY or STL mesh, to which `from` refers, has colours of vertices or faces.
+    pub fn has_colours(&self, from: &Location) -> Result<bool, SceneError> {
+        Ok(match self {
+            MeshSource::Ply(path) => ply::has_colours(&read_file(path, from)?),
+            MeshSource::Stl(path) => stl::has_colours(&read_file(path, from)?),
+            MeshSource::Obj(..)
+            | MeshSource::Serialized(..)
+            | MeshSource::Ready(_)
+            | MeshSource::Shared(_) => false,
+        })
+    }
 }
 
 /// Material and emission of a surface.

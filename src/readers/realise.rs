@@ -225,6 +225,13 @@ impl Contents {
                 | MeshSource::Stl(path)
                 | MeshSource::Serialized(path, _) => {
                     if made.meshes.iter().all(|mesh| mesh.triangles.is_empty()) {
+                        // The mesh is the scene.
+                        if plan.place == Location::file(path) {
+                            return Err(SceneError::mesh(
+                                plan.place.clone(),
+                                "there are no triangles or polygons",
+                            ));
+                        }
                         let what = format!("there are no triangles or polygons in {}", path.display());
                         log.warn(&plan.place, what, "the mesh is left out; repair or re-export it")?;
                     }
@@ -304,7 +311,7 @@ fn perform(task: &Task, bytes: &[u8], path: &Path, budget: &TriangleBudget) -> R
             let raw = match &plan.geometry {
                 MeshSource::Obj(_, selection) => mesh::obj::read(bytes, path, selection, &mut remarks)?,
                 MeshSource::Ply(_) => mesh::ply::read(bytes, path, &mut remarks)?,
-                MeshSource::Stl(_) => mesh::stl::read(bytes, path)?,
+                MeshSource::Stl(_) => mesh::stl::read(bytes, path, &mut remarks)?,
                 MeshSource::Serialized(_, index) => {
                     mesh::serialized::read(bytes, *index, path, &mut remarks)?
                 }

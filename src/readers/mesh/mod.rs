@@ -23,6 +23,9 @@ pub mod serialized;
 pub mod shapes;
 mod smooth;
 pub mod stl;
+mod stl_colours;
+mod stl_statements;
+mod stl_text;
 mod wavefront;
 
 pub(crate) use smooth::vertex_normals as smooth_normals;

@@ -3,87 +3,128 @@
 //! Corners at the same position become one vertex. Normals in the file are ignored: they are those of the faces.
 //!
 //! Deviations: a file is binary if its length is that of the stated number of triangles, even if it begins with
-//! `solid`. Reason against `stl_io` 0.11: it takes such files, which common exporters write, for text.
+//! `solid`. Of a file of another length, all triangles that are there are read. Reason against `stl_io` 0.11: it takes
+//! such files, which common exporters write, for text or for broken.
 
-use super::RawMesh;
-use crate::error::{Location, SceneError};
+use super::{RawMesh, stl_colours, stl_text};
+use crate::attributes::{FACE_COLOUR, NamedAttribute};
+use crate::error::{Location, SceneError, Warning};
 use glam::DVec3;
+use scene::AttributeValues;
 use std::collections::HashMap;
 use std::path::Path;
 
 /// Bytes before the number of triangles.
-const HEADER: usize = 80;
+pub(super) const HEADER: usize = 80;
 /// Bytes per triangle: normal, corners and two bytes of attributes.
-const RECORD: usize = 50;
+pub(super) const RECORD: usize = 50;
+/// Bytes at the start that tell a text from a binary file.
+const HEAD: usize = 1024;
+/// Coordinates of a triangle that the header does not count: zero, or a magnitude in this range.
+const PLAUSIBLE: std::ops::Range<f32> = 1e-15..1e15;
 
-/// Reads the STL file `bytes`; `path` is for messages.
-pub fn read(bytes: &[u8], path: &Path) -> Result<RawMesh, SceneError> {
+/// Reads the STL file `bytes`; `path` is for messages. Names in `remarks` what is not read.
+pub fn read(bytes: &[u8], path: &Path, remarks: &mut Vec<Warning>) -> Result<RawMesh, SceneError> {
     let mut builder = SoupBuilder::default();
-    match binary_records(bytes) {
-        Some(records) => records.chunks_exact(RECORD).for_each(|record| builder.record(record)),
-        None => builder.text(bytes, path)?,
+    match BinaryStl::of(bytes) {
+        Some(file) => {
+            file.records.iter().for_each(|record| builder.triangle(corners(record)));
+            file.report(path, remarks);
+            if let Some(colours) = stl_colours::of_faces(file.header, file.records) {
+                let values = AttributeValues::Triangles(colours);
+                builder.mesh.attributes.push(NamedAttribute { name: FACE_COLOUR.to_owned(), values });
+            }
+        }
+        None => stl_text::read(bytes, path, &mut builder, remarks),
     }
     Ok(builder.mesh)
 }
 
-/// Returns the triangles of a binary file; `None` for a text.
-fn binary_records(bytes: &[u8]) -> Option<&[u8]> {
-    let count = bytes.get(HEADER..HEADER + 4)?;
-    let count = u32::from_le_bytes(count.try_into().ok()?) as usize;
-    let records = &bytes[HEADER + 4..];
-    let is_whole = records.len() == count.checked_mul(RECORD)?;
-    let is_text = bytes.trim_ascii_start().starts_with(b"solid");
-    // A binary file that is cut off, or followed by other bytes, keeps its whole triangles.
-    (is_whole || !is_text).then(|| &records[..records.len().min(count.saturating_mul(RECORD))])
+/// Returns true if the STL file `bytes` has colours of faces.
+pub(crate) fn has_colours(bytes: &[u8]) -> bool {
+    BinaryStl::of(bytes).is_some_and(|file| stl_colours::of_faces(file.header, file.records).is_some())
 }
 
+/// A binary file.
+struct BinaryStl<'a> {
+    header: &'a [u8],
+    /// Number of triangles in the header.
+    stated: usize,
+    /// Triangles that are read.
+    records: &'a [[u8; RECORD]],
+    /// Number of bytes behind them.
+    behind: usize,
+}
+
+impl<'a> BinaryStl<'a> {
+    /// Divides a binary file into its parts; `None` for a text.
+    fn of(bytes: &'a [u8]) -> Option<BinaryStl<'a>> {
+        let (header, rest) = bytes.split_at_checked(HEADER)?;
+        let (count, rest) = rest.split_first_chunk()?;
+        let stated = u32::from_le_bytes(*count) as usize;
+        let (records, after) = rest.as_chunks::<RECORD>();
+        let is_whole = records.len() == stated && after.is_empty();
+        if !is_whole && is_text(bytes) {
+            return None;
+        }
+        let (counted, others) = records.split_at(stated.min(records.len()));
+        let plausible = others.iter().take_while(|record| is_plausible(record)).count();
+        let records = &records[..counted.len() + plausible];
+        Some(BinaryStl { header, stated, records, behind: rest.len() - records.len() * RECORD })
+    }
+
+    /// Names a wrong number of triangles, bytes behind them, and what is not read of the colours.
+    fn report(&self, path: &Path, remarks: &mut Vec<Warning>) {
+        let (stated, found) = (self.stated, self.records.len());
+        let mut warn = |what: String, fallback: String| {
+            remarks.push(Warning::new(Location::file(path), what, fallback));
+        };
+        if stated != found {
+            let what = format!("the header states {stated} triangles, and the file has {found}");
+            warn(what, format!("{found} are read; if some are missing, download or export the file again"));
+        } else if self.behind > 0 {
+            warn(format!("{} bytes follow the last triangle", self.behind), "they are left out".to_owned());
+        }
+        stl_colours::report(self.header, self.records, path, remarks);
+    }
+}
+
+/// True for a text: its first bytes are characters, or have the words of a facet.
+fn is_text(bytes: &[u8]) -> bool {
+    let head = bytes[..bytes.len().min(HEAD)].to_ascii_lowercase();
+    let is_char = |byte: &u8| *byte >= b' ' || byte.is_ascii_whitespace();
+    let has = |word: &[u8]| head.windows(word.len()).any(|part| part == word);
+    head.iter().all(is_char) || has(b"facet") && has(b"vertex")
+}
+
+/// True if bytes behind the last triangle that the header counts are another one.
+fn is_plausible(record: &[u8; RECORD]) -> bool {
+    let is_number = |number: f32| number == 0.0 || PLAUSIBLE.contains(&number.abs());
+    let normal = [0, 4, 8].map(|at| number(record, at));
+    normal.iter().all(|n| n.abs() <= 1.1) && corners(record).iter().flatten().all(|&n| is_number(n))
+}
+
+/// Returns the corners of a triangle, which follow its normal.
+fn corners(record: &[u8; RECORD]) -> [[f32; 3]; 3] {
+    [12, 24, 36].map(|at| [number(record, at), number(record, at + 4), number(record, at + 8)])
+}
+
+fn number(record: &[u8; RECORD], at: usize) -> f32 {
+    let bytes = record.get(at..at + 4).and_then(|bytes| bytes.try_into().ok());
+    f32::from_le_bytes(bytes.unwrap_or_default())
+}
+
+/// Builder of a mesh of triangles, whose corners at the same position become one vertex.
 #[derive(Default)]
-struct SoupBuilder {
-    mesh: RawMesh,
+pub(super) struct SoupBuilder {
+    pub mesh: RawMesh,
     /// Vertex at each position, by the bits of its coordinates.
     vertices: HashMap<[u32; 3], u32>,
 }
 
 impl SoupBuilder {
-    fn record(&mut self, record: &[u8]) {
-        let number = |at: usize| {
-            let bytes = record.get(at..at + 4).and_then(|bytes| bytes.try_into().ok());
-            f32::from_le_bytes(bytes.unwrap_or_default())
-        };
-        // The normal takes the first twelve bytes.
-        let corners = [12, 24, 36].map(|at| [number(at), number(at + 4), number(at + 8)]);
-        self.triangle(corners);
-    }
-
-    fn text(&mut self, bytes: &[u8], path: &Path) -> Result<(), SceneError> {
-        let mut corners: Vec<[f32; 3]> = Vec::new();
-        for (number, line) in super::wavefront::lines(bytes).enumerate() {
-            let wrong = |what: String| SceneError::mesh(Location::line(path, number as u32 + 1), what);
-            let text = String::from_utf8_lossy(line);
-            let mut words = text.split_ascii_whitespace();
-            match words.next().map(str::to_ascii_lowercase).as_deref() {
-                Some("vertex") => {
-                    let numbers: Vec<f32> = words.map_while(|word| word.parse().ok()).collect();
-                    let corner = numbers
-                        .try_into()
-                        .map_err(|_| wrong("a vertex does not have three numbers".into()))?;
-                    corners.push(corner);
-                }
-                Some("endloop") => match corners[..] {
-                    [a, b, c] => {
-                        self.triangle([a, b, c]);
-                        corners.clear();
-                    }
-                    _ => return Err(wrong(format!("a facet has {} corners, not three", corners.len()))),
-                },
-                Some("solid" | "facet" | "outer" | "endfacet" | "endsolid") | None => {}
-                Some(word) => return Err(wrong(format!("\"{word}\" is not a statement of STL files"))),
-            }
-        }
-        Ok(())
-    }
-
-    fn triangle(&mut self, corners: [[f32; 3]; 3]) {
+    /// Adds a triangle.
+    pub fn triangle(&mut self, corners: [[f32; 3]; 3]) {
         let triangle = corners.map(|corner| {
             // Both zeros are one position.
             let key = corner.map(|coordinate| (coordinate + 0.0).to_bits());
@@ -97,55 +138,73 @@ impl SoupBuilder {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
 
     const TEXT: &str = "solid ramp\n facet normal 0 0 1\n  outer loop\n   vertex 0 0 0\n   vertex 1 0 0\n   vertex 0 1 0\n\
         endloop\n endfacet\n facet normal 0 0 1\n outer loop\n vertex 1 0 -0\n vertex 1 1 0.5\n vertex 0 1 0\n endloop\n\
         endfacet\nendsolid ramp\n";
+    const RAMP: [[[f32; 3]; 3]; 2] = [
+        [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]],
+        [[1.0, 0.0, 0.0], [1.0, 1.0, 0.5], [0.0, 1.0, 0.0]],
+    ];
 
-    fn read(bytes: &[u8]) -> Result<RawMesh, String> {
-        super::read(bytes, Path::new("m.stl")).map_err(|error| error.to_string())
+    /// Reads a file; returns also the warnings.
+    pub fn read(bytes: &[u8]) -> (RawMesh, Vec<String>) {
+        let mut remarks = Vec::new();
+        let mesh = super::read(bytes, Path::new("m.stl"), &mut remarks).unwrap();
+        (mesh, remarks.iter().map(Warning::to_string).collect())
     }
 
-    /// Returns the binary file of triangles, with a header.
-    fn binary(header: &str, triangles: &[[[f32; 3]; 3]]) -> Vec<u8> {
-        let mut bytes = header.as_bytes().to_vec();
+    /// Returns the binary file of triangles with attributes.
+    pub fn binary(header: &[u8], triangles: &[([[f32; 3]; 3], u16)]) -> Vec<u8> {
+        let mut bytes = header.to_vec();
         bytes.resize(HEADER, b' ');
         bytes.extend((triangles.len() as u32).to_le_bytes());
-        for triangle in triangles {
+        for (triangle, attribute) in triangles {
             bytes.extend([0; 12]);
             bytes.extend(triangle.iter().flatten().flat_map(|number| number.to_le_bytes()));
-            bytes.extend([0; 2]);
+            bytes.extend(attribute.to_le_bytes());
         }
         bytes
     }
 
     #[test]
     fn text_and_binary_files_give_the_same_mesh_with_shared_vertices() {
-        let text = read(TEXT.as_bytes()).unwrap();
-        assert_eq!((text.positions.len(), &text.triangles[..]), (4, &[[0, 1, 2], [1, 3, 2]][..]));
-        let triangles = [
-            [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]],
-            [[1.0, 0.0, 0.0], [1.0, 1.0, 0.5], [0.0, 1.0, 0.0]],
-        ];
+        let (text, said) = read(TEXT.as_bytes());
+        assert_eq!(
+            (text.positions.len(), &text.triangles[..], said.len()),
+            (4, &[[0, 1, 2], [1, 3, 2]][..], 0)
+        );
         for header in ["made by hand", "solid of an exporter"] {
-            let mesh = read(&binary(header, &triangles)).unwrap();
+            let (mesh, said) = read(&binary(header.as_bytes(), &RAMP.map(|triangle| (triangle, 0))));
             assert_eq!((&mesh.positions, &mesh.triangles), (&text.positions, &text.triangles), "{header}");
+            assert_eq!(said, [""; 0]);
         }
-        // A file that is cut off keeps its first triangle.
-        let cut = &binary("", &triangles)[..HEADER + 4 + RECORD + 7];
-        assert_eq!(read(cut).unwrap().triangles.len(), 1);
+        assert!(read(b"").0.triangles.is_empty());
     }
 
     #[test]
-    fn damaged_texts_are_errors_with_their_line() {
-        for (from, to, line) in
-            [("vertex 1 0 0", "vertex 1 0", 5), ("vertex 0 1 0\nendloop", "endloop", 6), ("facet", "face", 2)]
-        {
-            let error = read(TEXT.replacen(from, to, 1).as_bytes()).unwrap_err();
-            assert!(error.starts_with(&format!("m.stl:{line}: ")), "{error}");
+    fn files_of_another_length_than_stated_have_the_triangles_that_are_there() {
+        for header in ["", "solid part"] {
+            let eight: Vec<_> = [RAMP; 4].as_flattened().iter().map(|&triangle| (triangle, 0)).collect();
+            let whole = binary(header.as_bytes(), &eight);
+            let stating =
+                |count: u32| [&whole[..HEADER], &count.to_le_bytes(), &whole[HEADER + 4..]].concat();
+            let with = |more: &[u8]| [&whole[..], more].concat();
+            for (bytes, count, what) in [
+                (stating(0), 8, "states 0 triangles, and the file has 8"),
+                (stating(5), 8, "states 5 triangles, and the file has 8"),
+                (stating(u32::MAX), 8, "states 4294967295 triangles, and the file has 8"),
+                (whole[..HEADER + 4 + 3 * RECORD + 7].to_vec(), 3, "states 8 triangles, and the file has 3"),
+                (whole[..HEADER + 4].to_vec(), 0, "states 8 triangles, and the file has 0"),
+                (with(b"end of the file, really"), 8, "23 bytes follow the last triangle"),
+                (with(&[b'e'; 2 * RECORD]), 8, "100 bytes follow the last triangle"),
+            ] {
+                let (mesh, said) = read(&bytes);
+                assert_eq!(mesh.triangles.len(), count, "{what}");
+                assert!(said.len() == 1 && said[0].contains(what), "{said:?}");
+            }
         }
-        assert!(read(b"").unwrap().triangles.is_empty());
     }
 }

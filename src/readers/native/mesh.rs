@@ -3,9 +3,9 @@
 use super::builder::SceneBuilder;
 use super::text::{ColourText, MeshText, NamesText, Number, ScaleText, StepText};
 use crate::error::{Location, SceneError};
-use crate::file::{read_file, stem_of};
+use crate::file::stem_of;
 use crate::gltf::{self, FRAMES_PER_SECOND, ImportOptions};
-use crate::mesh::{Normals, Placement, RawMesh, ply, shapes};
+use crate::mesh::{Normals, Placement, RawMesh, shapes};
 use crate::plan::{MaterialPlan, MeshPlan, MeshSource};
 use crate::selection::PartSelection;
 use base::math::unit;
@@ -34,7 +34,7 @@ impl SceneBuilder<'_> {
         let material = match (self.named_material(text)?, &geometry) {
             (Some(material), _) => MaterialPlan::One(material),
             (None, MeshSource::Obj(path, _)) => self.mtl_materials(path, &place, &to_world)?,
-            (None, MeshSource::Ply(path)) if ply::has_colours(&read_file(path, &place)?) => {
+            (None, source) if source.has_colours(&place)? => {
                 MaterialPlan::One(self.default_material(true, &place))
             }
             (None, _) => {

@@ -4,8 +4,7 @@ use super::builder::SceneBuilder;
 use super::source::SourceText;
 use super::text::SceneText;
 use crate::error::{Location, Log, SceneError};
-use crate::file::{read_file, stem_of};
-use crate::mesh::ply;
+use crate::file::stem_of;
 use crate::mesh::{Normals, Placement};
 use crate::plan::{MaterialPlan, MeshPlan, MeshSource, Motion, ScenePlan};
 use crate::selection::PartSelection;
@@ -24,15 +23,11 @@ pub(crate) fn read(path: &Path, extension: &str, log: &mut Log) -> Result<SceneP
             MeshSource::Obj(path.to_owned(), PartSelection::default()),
             builder.mtl_materials(path, &place, &DMat4::IDENTITY)?,
         ),
-        "stl" => {
-            (MeshSource::Stl(path.to_owned()), MaterialPlan::One(builder.default_material(false, &place)))
-        }
         _ => {
-            let has_colours = ply::has_colours(&read_file(path, &place)?);
-            (
-                MeshSource::Ply(path.to_owned()),
-                MaterialPlan::One(builder.default_material(has_colours, &place)),
-            )
+            let path = path.to_owned();
+            let source = if extension == "stl" { MeshSource::Stl(path) } else { MeshSource::Ply(path) };
+            let has_colours = source.has_colours(&place)?;
+            (source, MaterialPlan::One(builder.default_material(has_colours, &place)))
         }
     };
     let placement = Placement {

@@ -234,14 +234,12 @@ fn an_image_that_its_factor_makes_infinite_is_an_error() {
 
 #[test]
 fn a_mesh_file_in_which_nothing_is_found_is_warned_of_and_an_error_under_strict() {
-    let utf_16: Vec<u8> =
-        "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n".encode_utf16().flat_map(u16::to_le_bytes).collect();
     let vertices = "element vertex 3\nproperty float x\nproperty float y\nproperty float z\n";
     let points = "end_header\n0 0 0\n1 0 0\n0 1 0\n";
     let strips = "element tristrips 1\nproperty list int int vertex_indices\n";
     let files = [
-        ("a.obj", utf_16),
-        ("b.obj", Vec::new()),
+        ("a.stl", b"solid nothing\nendsolid nothing\n".to_vec()),
+        ("b.obj", b"v 0 0 0\n".to_vec()),
         ("c.obj", (0..=255).collect()),
         ("d.ply", format!("ply\nformat ascii 1.0\n{vertices}{points}").into_bytes()),
         ("e.ply", format!("ply\nformat ascii 1.0\n{vertices}{strips}{points}3 0 1 2\n").into_bytes()),
