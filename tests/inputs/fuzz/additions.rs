@@ -34,7 +34,8 @@ pub fn add(format: &str, bytes: &[u8], random: &mut Random) -> Addition {
         "toml" => to_toml(&text(), random),
         "ply" => ply(random),
         "exr" => exr(random),
-        "obj" | "mtl" => to_lines(&text(), random),
+        "views" => to_views(&text(), random),
+        "obj" | "mtl" | "stl" => to_lines(&text(), random),
         "gltf" => to_gltf(bytes, random),
         "xml" => to_xml(&text(), random),
         other => panic!("no additions to {other}"),
@@ -272,6 +273,26 @@ fn to_gltf(bytes: &[u8], random: &mut Random) -> Addition {
     // Numbers of array elements say nothing about the kind.
     let place: String = path.chars().filter(|c| !c.is_ascii_digit()).collect();
     Addition { bytes: serde_json::to_vec(&model).unwrap(), kind: format!("{kind} in {place}"), is_told }
+}
+
+/// Adds a key to a list of cameras or to one of its frames.
+fn to_views(text: &str, random: &mut Random) -> Addition {
+    let mut list: serde_json::Value = serde_json::from_str(text).unwrap();
+    let path = *random.pick(&["", "/frames/0"]);
+    let values = [
+        json!(0.5),
+        json!("tile.png"),
+        json!(true),
+        json!([0.1, 0.2]),
+        json!({ "zz": 1 }),
+        json!(0),
+        json!(null),
+    ];
+    let at = random.below(values.len());
+    list.pointer_mut(path).unwrap()[name(random)] = values[at].clone();
+    let kind = format!("a key in \"{path}\": {}", values[at]);
+    // Zero and null change nothing.
+    Addition { bytes: serde_json::to_vec(&list).unwrap(), kind, is_told: at < 5 }
 }
 
 /// Collects the pointers to the objects of a JSON text, but for those of applications.

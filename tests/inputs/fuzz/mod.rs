@@ -8,6 +8,7 @@
 //! than [`MAX_BYTES`] or [`MAX_SECONDS`], is left in `target/tmp/fuzz`.
 
 mod additions;
+mod damage;
 mod mutate;
 mod seeds;
 mod target;
@@ -209,6 +210,7 @@ targets! {
     obj 500
     mtl 500
     ply 500
+    stl 500
     serialized 500
     gltf 500
     exr 500

@@ -116,14 +116,19 @@ fn change_bytes(bytes: &mut Vec<u8>, other: &[u8], random: &mut Random) {
     }
 }
 
-/// Changes a number of a text to one of its kind.
-fn change_number(bytes: &mut Vec<u8>, random: &mut Random) {
+/// Places of the numbers of a text.
+pub fn number_places(bytes: &[u8]) -> Vec<Range<usize>> {
     let is_word = |b: u8| b.is_ascii_alphanumeric() || b"_.+-#".contains(&b);
     let is_number = |run: &Range<usize>| {
         std::str::from_utf8(&bytes[run.clone()])
             .is_ok_and(|text| text.parse::<f64>().is_ok_and(f64::is_finite))
     };
-    let numbers: Vec<_> = runs(bytes, is_word).into_iter().filter(is_number).collect();
+    runs(bytes, is_word).into_iter().filter(is_number).collect()
+}
+
+/// Changes a number of a text to one of its kind.
+fn change_number(bytes: &mut Vec<u8>, random: &mut Random) {
+    let numbers = number_places(bytes);
     if numbers.is_empty() {
         return;
     }

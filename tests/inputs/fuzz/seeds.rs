@@ -85,6 +85,7 @@ pub fn of(target: &str) -> Vec<Seed> {
         "obj" => valid("obj").into_iter().chain(vec![Seed::plain("obj", ALL_OF_OBJ)]).collect(),
         "mtl" => valid("mtl").into_iter().chain(vec![Seed::plain("mtl", ALL_OF_MTL)]).collect(),
         "ply" => valid("ply").into_iter().chain(vec![binary_ply(true), binary_ply(false)]).collect(),
+        "stl" => vec![Seed::plain("stl", STL), binary_stl()],
         "serialized" => valid("serialized").into_iter().chain(vec![inflated(3), inflated(4)]).collect(),
         "gltf" => samples::all().into_iter().flat_map(|(_, model, _)| gltf(model)).collect(),
         "exr" => valid("exr").into_iter().chain(vec![layered_exr()]).collect(),
@@ -113,6 +114,24 @@ const ALL_OF_MTL: &str = "newmtl slab\nKd 0.6 0.6 0.5\nKe 1 2 3\nmap_Ke tile.png
     anisor 0.2\nmap_Pr -imfchan g tile.png\nmap_Pm -mm 0.1 0.8 tile.png\nnorm -bm 0.5 tile.png\nillum 3\n\
     newmtl tiles\nKa 0.5 0.5 0.5\nKd 0.9 0.6 0.2\nKs 0.5\nNs 90\nillum 6\nd 0.5\nbump tile.png -s 2 -o 0.1 0.2\n\
     map_Ks -clamp on -t 1 1 1 tile.png\nmap_d -blendu off -blendv off tile.png\ndisp no.png\nKm 1\nKd xyz 1 1 1\n";
+
+const STL: &str = "solid roof # of a house\n# two slopes\n facet normal 0 0 1\n  outer loop\n   vertex 0 0 0\n   \
+    vertex 1 0 0\n   vertex 0 1 0\n  endloop\n endfacet\n facet normal 0 0 1\n  outer loop\n   vertex 1 0 0\n   \
+    vertex 1 1 0.5\n   vertex 0 1 0\n  endloop\n endfacet\nendsolid roof\n";
+
+/// Triangles with colours of VisCAM.
+fn binary_stl() -> Seed {
+    let mut bytes = b"solid by an exporter".to_vec();
+    bytes.resize(80, b' ');
+    bytes.extend(4u32.to_le_bytes());
+    for i in 0..4u8 {
+        let x = f32::from(i);
+        let numbers = [0.0, 0.0, 1.0, x, 0.25, 0.5, x + 1.0, 0.25, 0.5, x, 1.5, 0.75f32];
+        numbers.iter().for_each(|number| bytes.extend(number.to_le_bytes()));
+        bytes.extend((0x8000u16 | 0x1234 << i & 0x7FFF).to_le_bytes());
+    }
+    Seed::plain("stl", bytes)
+}
 
 /// Scenes that are not there: nothing is rendered.
 const JOB: &str = "options = { spp = 8, resolution = \"64x32\", denoise = true, strict = false }\n\

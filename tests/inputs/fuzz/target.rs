@@ -23,7 +23,7 @@ fn scenes() -> Vec<(String, String)> {
     let head = "resolution = [8, 8]\ncamera = { origin = [0, 1, 5], target = [0, 0, 0] }\n\
         environment = { radiance = 1 }\nmaterial = [{ name = \"m\", kind = \"diffuse\", reflectance = 0.5 }]\n";
     let mut scenes = Vec::new();
-    for mesh in ["obj", "ply", "serialized"] {
+    for mesh in ["obj", "ply", "serialized", "stl"] {
         let own = if mesh == "obj" { "mesh = [{ file = \"case.obj\" }, " } else { "mesh = [" };
         let text = format!("{head}{own}{{ file = \"case.{mesh}\", material = \"m\" }}]\n");
         scenes.push((format!("of-{mesh}.toml"), text));

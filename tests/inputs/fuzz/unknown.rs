@@ -11,7 +11,7 @@ use super::additions::{self, Addition};
 use super::mutate::Random;
 use super::seeds;
 use super::target::{Workplace, without_sky};
-use lightsplat::readers::LoadOptions;
+use lightsplat::readers::{LoadOptions, ViewList};
 use lightsplat::scene::Environment;
 use std::collections::BTreeMap;
 use std::fs;
@@ -28,6 +28,11 @@ fn add(format: &str, count: u64) {
     // Number of warnings about a file; `None` if it does not load.
     let warnings = |extension: &str, bytes: &[u8]| -> Result<usize, String> {
         fs::write(workplace.case(extension), bytes).unwrap();
+        if extension == "json" {
+            let list =
+                ViewList::read(&workplace.case(extension), &options).map_err(|error| error.to_string())?;
+            return Ok(list.warnings().len());
+        }
         let loaded = workplace.load(extension, &options).map_err(|error| error.to_string())?;
         if let Some(Environment::Map(map)) = loaded.scene.environment.filter(|_| format == "exr") {
             assert!(map.radiance.iter().all(|texel| *texel == additions::SKY), "another channel is read");
@@ -39,6 +44,7 @@ fn add(format: &str, count: u64) {
         "exr" | "ply" => vec![(0, format, Vec::new())],
         _ => (seeds::of(format).into_iter())
             .filter(|seed| format != "gltf" || seed.extension == "gltf")
+            .filter(|seed| format != "stl" || seed.bytes.is_ascii())
             .filter_map(|seed| {
                 Some((warnings(seed.extension, &seed.bytes).ok()?, seed.extension, seed.bytes))
             })
@@ -84,6 +90,16 @@ fn statements_of_ply_are_told() {
 #[test]
 fn channels_of_exr_besides_the_picture_are_no_trouble() {
     add("exr", 300);
+}
+
+#[test]
+fn statements_of_stl_are_told() {
+    add("stl", 300);
+}
+
+#[test]
+fn keys_of_lists_of_cameras_are_told() {
+    add("views", 300);
 }
 
 #[test]
