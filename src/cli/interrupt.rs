@@ -4,16 +4,22 @@
 //! once. Files are complete or unchanged, so that no existing file is lost. While a scene is read there is no partial
 //! result, and the first signal ends the process.
 //!
-//! SIGUSR1 asks for a preview.
+//! SIGUSR1 asks for a preview. Signals that are ignored when the program starts stay ignored.
 
 use super::exit::{self, Failure};
 use super::talk;
 use anyhow::anyhow;
 use base::progress::Control;
 use embree::leave;
-use signal_hook::consts::SIGUSR1;
+use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM, SIGUSR1, SIGXFSZ};
+use signal_hook::flag;
+use signal_hook::iterator::Signals;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, OnceLock};
+use std::{fs, io, thread};
+
+/// Signals that end a run.
+const ENDING: [i32; 3] = [SIGHUP, SIGINT, SIGTERM];
 
 /// True while a scene is being read.
 static IS_OPENING: AtomicBool = AtomicBool::new(false);
@@ -46,26 +52,88 @@ pub fn takes_request_for_preview() -> bool {
 ///
 /// # Errors
 /// If a handler cannot be installed.
-pub fn cancel_on_signal(control: &Arc<Control>) -> Result<(), ctrlc::Error> {
-    let wants = WANTS_PREVIEW.get_or_init(Arc::default);
-    signal_hook::flag::register(SIGUSR1, Arc::clone(wants)).map_err(ctrlc::Error::System)?;
+pub fn cancel_on_signal(control: &Arc<Control>) -> io::Result<()> {
+    let ignored = Ignored::now();
+    if !ignored.has(SIGUSR1) {
+        flag::register(SIGUSR1, Arc::clone(WANTS_PREVIEW.get_or_init(Arc::default)))?;
+    }
+    let mut signals = Signals::new(ENDING.into_iter().filter(|signal| !ignored.has(*signal)))?;
     let control = Arc::clone(control);
-    ctrlc::set_handler(move || {
-        if control.is_cancelled() {
-            end(exit::ABORTED);
-        }
-        control.cancel();
-        if IS_OPENING.load(Ordering::SeqCst) {
-            talk::error(&Failure::interrupted(anyhow!(
-                "interrupted while reading the scene; nothing is written"
-            )));
-            end(exit::INTERRUPTED);
-        }
-        talk::note("interrupted: finishing up; press Ctrl-C again to stop at once");
-    })
+    let watch = move || signals.forever().for_each(|_| cancel(&control));
+    thread::Builder::new().name("signals".to_owned()).spawn(watch).map(drop)
+}
+
+/// Makes writing beyond the size limit of files an error instead of the end of the process, which would leave a
+/// temporary file.
+///
+/// # Errors
+/// If a handler cannot be installed.
+pub fn keep_running_at_size_limit() -> io::Result<()> {
+    // Calls that write fail if the signal is caught or ignored.
+    if !Ignored::now().has(SIGXFSZ) {
+        flag::register(SIGXFSZ, Arc::default())?;
+    }
+    Ok(())
+}
+
+/// Reacts to a signal to end.
+fn cancel(control: &Control) {
+    if control.is_cancelled() {
+        end(exit::ABORTED);
+    }
+    control.cancel();
+    if IS_OPENING.load(Ordering::SeqCst) {
+        talk::error(&Failure::interrupted(anyhow!(
+            "interrupted while reading the scene; nothing is written"
+        )));
+        end(exit::INTERRUPTED);
+    }
+    talk::note("interrupted: finishing up; press Ctrl-C again to stop at once");
+}
+
+/// Signals that were ignored when the program started, one bit each. They stay ignored: `nohup`, `trap ''` and jobs in
+/// the background of scripts ask for it.
+struct Ignored(u64);
+
+impl Ignored {
+    /// Reads the signals that this process ignores. Without the file of Linux, none are known.
+    fn now() -> Ignored {
+        Ignored::of(&fs::read_to_string("/proc/self/status").unwrap_or_default())
+    }
+
+    fn of(status: &str) -> Ignored {
+        let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
+        Ignored(mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok()).unwrap_or(0))
+    }
+
+    fn has(&self, signal: i32) -> bool {
+        u32::try_from(signal - 1)
+            .ok()
+            .and_then(|bit| self.0.checked_shr(bit))
+            .is_some_and(|bits| bits & 1 == 1)
+    }
 }
 
 fn end(code: u8) -> ! {
     talk::end(code);
     leave(code)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ignored_signals_are_bits_of_the_mask_in_the_status() {
+        let found =
+            |status: &str| [SIGHUP, SIGINT, SIGUSR1, SIGTERM].map(|signal| Ignored::of(status).has(signal));
+        assert_eq!(
+            found("SigBlk:\t00000000ffffffff\nSigIgn:\t0000000000001001\n"),
+            [true, false, false, false]
+        );
+        assert_eq!(found("SigIgn:\t0000000000004202"), [false, true, true, true]);
+        for none in ["", "SigIgn:\tx", "SigIgn:"] {
+            assert_eq!(found(none), [false; 4], "{none}");
+        }
+    }
 }

@@ -90,6 +90,9 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
             });
         }
     };
+    if let Err(error) = interrupt::keep_running_at_size_limit() {
+        talk::warning(&format!("cannot catch signals: {error}"));
+    }
     let outcome = catch_unwind(AssertUnwindSafe(|| match cli.command {
         Command::Render(args) => render::run(*args),
         Command::Walk(args) => walk::run(*args),

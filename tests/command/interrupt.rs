@@ -53,6 +53,30 @@ fn interrupted_renders_end_with_75_and_leave_a_picture_marked_as_partial() {
     }
 }
 
+#[test]
+fn signals_that_are_ignored_when_the_program_starts_stay_ignored() {
+    for name in ["HUP", "INT", "TERM", "USR1"] {
+        let sandbox = Sandbox::new();
+        let mut command = Command::new("sh");
+        command.args([
+            "-c",
+            &format!("trap '' {name}; exec \"$0\" \"$@\""),
+            env!("CARGO_BIN_EXE_lightsplat"),
+        ]);
+        command.args(Sandbox::path_tracing("500", &["--resolution", "48x32", "--progress", "ndjson"]));
+        command.current_dir(sandbox.folder.path()).stderr(Stdio::piped());
+        let mut child = command.spawn().unwrap();
+        let mut lines = BufReader::new(child.stderr.take().unwrap()).lines().map(Result::unwrap);
+        assert!(lines.any(|line| line.contains(r#""event":"progress""#)));
+        signal(&child, &format!("-{name}"));
+        lines.for_each(drop);
+        assert_eq!(child.wait().unwrap().code(), Some(0), "{name}");
+        let file = ExrFile::read(&sandbox.path("a.exr")).unwrap();
+        assert_eq!(file.metadata().text("partial"), Some("false"));
+        assert_eq!(sandbox.files(), ["a.exr", "a.png", "room.xml"]);
+    }
+}
+
 /// Interrupts a render; false if it ended before.
 fn interrupted(sandbox: &Sandbox, arguments: &[&str]) -> bool {
     let mut child = begun_by(sandbox, arguments);
