@@ -225,7 +225,7 @@ impl JobEntry {
         let Ok(list) = ViewList::read(&args.cameras, &args.picture.reading.clone().options()) else {
             return Ok(vec![self]);
         };
-        let (count, size) = (list.file_names().len(), size.get());
+        let (count, size) = (list.numbers().last().copied().unwrap_or(0), size.get());
         let chunk = |first: usize| {
             let part = format!("{first}-{}", first.saturating_add(size - 1).min(count));
             let mut arguments = self.arguments.clone();

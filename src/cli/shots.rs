@@ -1,7 +1,7 @@
 //! Images of a walk job: the frames of the scene's camera path, or the views of a list. Both are numbered from 1.
 
 use readers::ViewList;
-use render::walk::FileNames;
+use render::walk::{FileNames, FrameList};
 use std::path::{Path, PathBuf};
 
 /// Images of a walk job.
@@ -67,9 +67,17 @@ impl Shots {
 }
 
 impl ViewFiles {
-    /// Returns the number of views.
-    pub fn count(&self) -> usize {
-        self.list.file_names().len()
+    /// Returns the number of the last view in the list.
+    pub fn last(&self) -> usize {
+        self.list.numbers().last().copied().unwrap_or(0)
+    }
+
+    /// Returns the numbers of the views that can be rendered, in the order of `only`.
+    pub fn numbers(&self, only: Option<&FrameList>) -> Vec<usize> {
+        let all = self.list.numbers();
+        let known =
+            |list: &FrameList| list.iter().filter(|number| all.binary_search(number).is_ok()).collect();
+        only.map_or_else(|| all.to_owned(), known)
     }
 
     /// Returns the name of a view: the path of its image in the folder, without extension.
@@ -78,7 +86,8 @@ impl ViewFiles {
     }
 
     fn file_name(&self, number: usize) -> &Path {
-        let name = number.checked_sub(1).and_then(|index| self.list.file_names().get(index));
+        let place = self.list.numbers().binary_search(&number).ok();
+        let name = place.and_then(|index| self.list.file_names().get(index));
         name.map_or(Path::new(""), PathBuf::as_path)
     }
 

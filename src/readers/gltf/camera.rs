@@ -76,7 +76,7 @@ impl Viewer<'_> {
     }
 
     /// Returns all cameras of the file in their order, each with the size of its film.
-    pub fn views(&self) -> Result<Vec<DraftView>, SceneError> {
+    pub fn views(&self) -> Result<Vec<Result<DraftView, SceneError>>, SceneError> {
         let view = |(at, camera): (usize, &Camera)| {
             let lens = self.lens(at, camera)?;
             let resolution = lens.resolution();
@@ -87,7 +87,7 @@ impl Viewer<'_> {
             let camera = self.camera(&self.tree[at].to_file, &lens, resolution)?;
             Ok(DraftView { name: name.to_owned(), is_path: false, camera, resolution: Some(resolution) })
         };
-        self.cameras()?.into_iter().map(view).collect()
+        Ok(self.cameras()?.into_iter().map(view).collect())
     }
 
     /// Returns the cameras of the file, each with the index of its node in the tree.

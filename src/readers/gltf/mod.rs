@@ -86,7 +86,7 @@ pub(super) fn read(path: &Path, options: &LoadOptions, log: &mut Log) -> Result<
 }
 
 /// Reads all cameras of the model at `path`, in its pose at rest. Its meshes are not read.
-pub(super) fn read_views(path: &Path) -> Result<Vec<DraftView>, SceneError> {
+pub(super) fn read_views(path: &Path) -> Result<Vec<Result<DraftView, SceneError>>, SceneError> {
     let document = GltfFile::without_buffers(path, &Location::file(path))?;
     let tree = nodes::tree(&document, &PartSelection::default(), |_, node| Local::of(node))?;
     let (to_world, fps) = (DMat4::IDENTITY, FRAMES_PER_SECOND);

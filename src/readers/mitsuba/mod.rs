@@ -38,7 +38,7 @@ pub(super) fn read_views(
     path: &Path,
     given: &[(String, String)],
     log: &mut Log,
-) -> Result<Vec<DraftView>, SceneError> {
+) -> Result<Vec<Result<DraftView, SceneError>>, SceneError> {
     let document = SceneXml::read(path, given, log);
     let document = log.conclude(document)?;
     let views = Converter::new(&document, path, log).views();

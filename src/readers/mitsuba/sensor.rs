@@ -35,18 +35,17 @@ impl Converter<'_> {
     }
 
     /// Returns all sensors as a list of views.
-    pub(super) fn views(&mut self) -> Result<Vec<DraftView>, SceneError> {
+    pub(super) fn views(&mut self) -> Result<Vec<Result<DraftView, SceneError>>, SceneError> {
         let sensors = self.tagged(&self.document.root, "sensor")?;
-        let mut views = Vec::with_capacity(sensors.len());
-        for sensor in &sensors {
+        let view = |sensor: &Rc<Object>| {
             let Shot { camera, resolution, crop, .. } = self.shot_of(sensor)?;
             if crop.is_some() {
                 self.log.note(&sensor.place, "the film has a crop", "views are whole films");
             }
             let name = sensor.id.clone().unwrap_or_default();
-            views.push(DraftView { name, is_path: false, camera, resolution: Some(resolution) });
-        }
-        Ok(views)
+            Ok(DraftView { name, is_path: false, camera, resolution: Some(resolution) })
+        };
+        Ok(sensors.iter().map(view).collect())
     }
 
     /// Returns the shot of a sensor, without the names of sensors.

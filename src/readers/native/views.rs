@@ -40,7 +40,7 @@ struct ViewText {
 }
 
 /// Reads the list at `path`.
-pub fn read(path: &Path) -> Result<Vec<DraftView>, SceneError> {
+pub fn read(path: &Path) -> Result<Vec<Result<DraftView, SceneError>>, SceneError> {
     let (text, _) = read_text(path, &Location::file(path))?;
     let file = SourceText { path, text: &text };
     let is_table = |table: Table| table.get("camera").is_some_and(Value::is_table);
@@ -50,7 +50,7 @@ pub fn read(path: &Path) -> Result<Vec<DraftView>, SceneError> {
     }
     let list: ListText = toml::from_str(&text).map_err(|error| mistake::of(file, &error))?;
     let shared = film(file, list.resolution.as_ref())?;
-    list.camera.into_iter().map(|view| self::view(file, view, shared)).collect()
+    Ok(list.camera.into_iter().map(|view| self::view(file, view, shared)).collect())
 }
 
 fn view(

@@ -11,14 +11,14 @@ const IMAGES: [&str; 9] = ["png", "jpg", "jpeg", "exr", "webp", "tif", "tiff", "
 /// Maximum number of bytes of a part of a name. File systems allow 255 with all extensions.
 const MAX_PART: usize = 200;
 
-/// Returns the name of the image of each view.
+/// Returns the name of the image of each view, which has a number in the list.
 ///
 /// A path of a data set keeps its folders below the output folder, and loses the extension of an image. A note names
 /// paths that lead elsewhere, and names that are used twice.
-pub fn file_names(views: &[DraftView], place: &Location, log: &mut Log) -> Vec<PathBuf> {
+pub fn file_names(numbers: &[usize], views: &[DraftView], place: &Location, log: &mut Log) -> Vec<PathBuf> {
     let (mut taken, mut names) = (BTreeSet::new(), Vec::with_capacity(views.len()));
     let (mut outside, mut repeated) = (Vec::new(), Vec::new());
-    for (number, view) in (1..).zip(views) {
+    for (number, view) in numbers.iter().zip(views) {
         let Parts { parts, leads_elsewhere } = parts_of(view);
         let name = if parts.is_empty() { format!("view_{number:04}") } else { parts.join("/") };
         if leads_elsewhere {
@@ -110,7 +110,8 @@ mod tests {
         let view = |name: &&str| DraftView { name: (*name).to_owned(), is_path, camera, resolution: None };
         let views: Vec<DraftView> = names.iter().map(view).collect();
         let mut log = Log::new(false);
-        let found = file_names(&views, &Location::file(Path::new("t.json")), &mut log);
+        let numbers: Vec<usize> = (1..=names.len()).collect();
+        let found = file_names(&numbers, &views, &Location::file(Path::new("t.json")), &mut log);
         let text = |path: PathBuf| path.to_str().unwrap().to_owned();
         let warnings = log.into_warnings().iter().map(ToString::to_string).collect();
         (found.into_iter().map(text).collect(), warnings)

@@ -79,7 +79,11 @@ fn what_is_not_supported_is_named_once_and_zeros_are_not() {
     assert!(found.warnings()[0].fallback.contains("no distortion"));
     let skewed = MATRIX.replace("[0, 1, 0, 3]", "[0, 2, 0, 3]");
     let found = nerf(&frames("\"camera_angle_x\": 1,", "").replace(MATRIX, &skewed));
-    assert!(found.warnings()[0].what.contains("frame 1 shears, mirrors or scales"), "{:?}", found.warnings());
+    assert!(
+        found.warnings()[0].what.contains("frame 1 shears, mirrors or scales unevenly"),
+        "{:?}",
+        found.warnings()
+    );
     assert_eq!(cameras(&found)[0].camera.up, Vec3::Z);
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("t.json");
@@ -110,7 +114,7 @@ fn wrong_lists_are_errors_with_the_file_the_entry_and_a_remedy() {
         (frames("\"w\": 8.5, \"h\": 8,", ""), "w is 8.5; write a whole number"),
         (frames("\"w\": 8, \"h\": 1e9,", ""), "h is 1000000000"),
         (frames("\"camera_angle_x\": 4,", ""), "camera_angle_x is 4; write an angle in radians"),
-        (frames("\"camera_angle_x\": \"wide\",", ""), "camera_angle_x is \"wide\"; write a number"),
+        (frames("\"camera_angle_x\": \"wide\",", ""), "camera_angle_x is wide; write a number"),
         (frames("\"camera_angle_x\": -1,", ""), "camera_angle_x is -1"),
         (frames("\"fl_x\": 0, \"w\": 8, \"h\": 8,", ""), "fl_x is 0; write a number above 0"),
         (frames(angle, "\"cx\": 3,"), "add w and h"),
@@ -132,6 +136,76 @@ fn wrong_lists_are_errors_with_the_file_the_entry_and_a_remedy() {
     );
     let far = frames(angle, "").replace("[1, 0, 0, 2]", "[1, 0, 0, 1e300]");
     assert!(nerf(&far).in_scene(&Scene::default()).unwrap_err().to_string().contains("a camera stands at"));
+}
+
+#[test]
+fn a_camera_that_is_wrong_is_left_out_and_named_and_the_others_keep_their_numbers() {
+    let good = "[[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 5], [0, 0, 0, 1]]";
+    let of =
+        |matrix: &str, name: &str| format!("{{ \"file_path\": \"{name}\", \"transform_matrix\": {matrix} }}");
+    let text = |bad: &str| {
+        let frames = [of(good, "a"), bad.to_owned(), of(good, "")].join(",\n");
+        format!("{{ \"camera_angle_x\": 1, \"frames\": [{frames}] }}")
+    };
+    let row = |row: &str| of(&good.replace("[0, 1, 0, 0]", row), "Na\\\"N");
+    for (bad, expected) in [
+        (row("[-Infinity, Infinity, NaN, 0]"), "frame 2 (\"Na\"N\"): the transform_matrix holds -Infinity"),
+        (row("[0, NaN, 0, 0]"), "the transform_matrix holds NaN"),
+        (row("[0, null, 0, 0]"), "the transform_matrix holds null"),
+        (row("[0, \"1e999\", 0, 0]"), "the transform_matrix holds 1e999"),
+        (row("[0, 1, 0]"), "no valid transform_matrix"),
+        (of(&good.replace('1', "0"), "b"), "no valid transform_matrix"),
+        (
+            of("[[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 5, 1]]", "b"),
+            "has its translation in the last row",
+        ),
+        ("{ \"file_path\": \"b\" }".to_owned(), "frame 2 (\"b\"): there is no valid transform_matrix"),
+        ("7".to_owned(), "frame 2 is no table"),
+        (of(good, "b").replace("{ ", "{ \"w\": NaN, \"h\": 3, "), "w is NaN"),
+    ] {
+        let found = list("t.json", &text(&bad)).unwrap_or_else(|error| panic!("{bad}: {error}"));
+        assert_eq!(found.numbers(), [1, 3]);
+        assert_eq!(found.file_names(), ["a", "view_0003"].map(Path::new));
+        let [warning] = found.warnings() else { panic!("{bad}: {:?}", found.warnings()) };
+        assert!(warning.what.contains(expected) && warning.fallback.contains("left out"), "{bad}: {warning}");
+        let folder = tempfile::tempdir().unwrap();
+        fs::write(folder.path().join("t.json"), text(&bad)).unwrap();
+        let strict = LoadOptions { strict: true, ..LoadOptions::default() };
+        let error = ViewList::read(&folder.path().join("t.json"), &strict).unwrap_err().to_string();
+        assert!(error.contains(expected), "{error}");
+    }
+    let many = list("t.json", &text(&["7"; 30].join(","))).unwrap();
+    let said: Vec<String> = many.warnings().iter().map(ToString::to_string).collect();
+    assert!(said.len() == 11 && said[10].contains("20 more cameras"), "{said:?}");
+    // Lists of other formats.
+    let camera = "[[camera]]\norigin = [0, 0, 5]\ntarget = [0, 0, 0]\n";
+    let found = list("v.toml", &[camera, "[[camera]]\norigin = [0, 0, 5]\n", camera].concat()).unwrap();
+    assert_eq!(found.numbers(), [1, 3]);
+    let said = found.warnings()[0].to_string();
+    assert!(said.contains("v.toml:4: camera 2: a camera of a list"), "{said}");
+    let sensors = "<sensor type=\"fisheye\"/><sensor type=\"perspective\"/>";
+    let found = list("s.xml", &format!("<scene version=\"3.0.0\">{sensors}</scene>")).unwrap();
+    assert!(found.numbers() == [2] && found.warnings()[0].what.contains("camera 1: the sensor"), "{found:?}");
+}
+
+#[test]
+fn lists_are_read_in_the_encodings_of_windows_and_with_numbers_as_texts() {
+    let plain = frames("\"camera_angle_x\": 1, \"w\": 32, \"h\": 24,", "");
+    let hash = nerf(&plain).hash();
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("t.json");
+    let mark = "\u{feff}".to_owned() + &plain;
+    let utf_16 = |bytes: fn(u16) -> [u8; 2]| mark.encode_utf16().flat_map(bytes).collect::<Vec<u8>>();
+    for bytes in [mark.clone().into_bytes(), utf_16(u16::to_le_bytes), utf_16(u16::to_be_bytes)] {
+        fs::write(&path, bytes).unwrap();
+        assert_eq!(ViewList::read(&path, &LoadOptions::default()).unwrap().hash(), hash);
+    }
+    let texts = plain.replace(": 32", ": \"32\"").replace("[0, 1, 0, 3]", "[0, \"1\", 0, 3]");
+    assert_eq!(nerf(&texts).hash(), hash);
+    // A scale of the matrix is no shear.
+    let scaled = "[[0, 0, 0.25, 1], [0.25, 0, 0, 2], [0, 0.25, 0, 3], [0, 0, 0, 1]]";
+    let found = nerf(&plain.replace(MATRIX, scaled));
+    assert!(found.warnings().is_empty() && found.hash() == hash, "{:?}", found.warnings());
 }
 
 #[test]

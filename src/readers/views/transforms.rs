@@ -1,7 +1,7 @@
 //! `transforms.json` of NeRF data sets: intrinsics in pixels or as a field of view, and a matrix per frame.
 //!
 //! Intrinsics of a frame replace the intrinsics of the file. Cameras look along -z with y up, as in OpenGL and Blender.
-//! Lengths of the matrix's axes have no effect.
+//! A scale of the matrix has no effect. Numbers may be texts, and Python's `NaN` and `Infinity` are read as texts.
 
 use super::statements::STATEMENTS;
 use crate::draft::{DraftCamera, DraftView};
@@ -12,6 +12,7 @@ use base::math::{right_of, unit};
 use glam::DVec3;
 use scene::MAX_SIDE;
 use serde_json::{Map, Value};
+use std::borrow::Cow;
 use std::collections::BTreeSet;
 use std::path::Path;
 
@@ -19,14 +20,14 @@ use std::path::Path;
 const PERSPECTIVE: [&str; 7] =
     ["OPENCV", "PINHOLE", "SIMPLE_PINHOLE", "SIMPLE_RADIAL", "RADIAL", "FULL_OPENCV", "PERSPECTIVE"];
 
-/// Deviation of a matrix from a rotation that is named. Calibrations round their matrices.
+/// Relative deviation of a matrix from a scaled rotation that is named. Calibrations round their matrices.
 const SKEW: f64 = 1e-2;
 
 /// Reads the list at `path`.
-pub fn read(path: &Path, log: &mut Log) -> Result<Vec<DraftView>, SceneError> {
+pub fn read(path: &Path, log: &mut Log) -> Result<Vec<Result<DraftView, SceneError>>, SceneError> {
     let place = Location::file(path);
     let (text, _) = read_text(path, &place)?;
-    let root: Value = serde_json::from_str(&text).map_err(|error| {
+    let root: Value = serde_json::from_str(&python_numbers_quoted(&text)).map_err(|error| {
         let line = u32::try_from(error.line()).unwrap_or(u32::MAX);
         Location::line(path, line).malformed(error.to_string())
     })?;
@@ -35,20 +36,59 @@ pub fn read(path: &Path, log: &mut Log) -> Result<Vec<DraftView>, SceneError> {
     let frames = root.get("frames").and_then(Value::as_array).ok_or_else(shape)?;
     let mut reader = Reader { place: &place, root, named: BTreeSet::new(), skewed: Vec::new() };
     reader.name_unread(root, log)?;
-    let mut views = Vec::with_capacity(frames.len());
-    for (number, frame) in (1..).zip(frames) {
+    let mut view = |number: usize, frame: &Value| {
         let wrong =
             || place.wrong(format!("frame {number} is no table"), "write { \"transform_matrix\": ... }");
         let frame = frame.as_object().ok_or_else(wrong)?;
         reader.name_unread(frame, log)?;
-        views.push(reader.view(number, frame)?);
-    }
+        reader.view(number, frame)
+    };
+    let views = (1..).zip(frames).map(|(number, frame)| view(number, frame)).collect();
     if let Some((first, others)) = reader.skewed.split_first() {
         let more = if others.is_empty() { String::new() } else { format!(" and of {} more", others.len()) };
-        let what = format!("the transform_matrix of {first}{more} shears, mirrors or scales");
+        let what = format!("the transform_matrix of {first}{more} shears, mirrors or scales unevenly");
         log.warn(&place, what, "the camera keeps its position and direction, and y is up")?;
     }
     Ok(views)
+}
+
+/// Returns JSON in which the numbers that Python writes beside the numbers of JSON are texts.
+fn python_numbers_quoted(text: &str) -> Cow<'_, str> {
+    const WORDS: [&str; 3] = ["-Infinity", "Infinity", "NaN"];
+    if !WORDS.iter().any(|word| text.contains(word)) {
+        return text.into();
+    }
+    let (mut quoted, mut rest, mut in_string) = (String::with_capacity(text.len()), text, false);
+    while let Some(first) = rest.chars().next() {
+        let word = WORDS.iter().find(|word| !in_string && rest.starts_with(**word));
+        // A backslash keeps the character after it from ending the string.
+        let taken = if in_string && first == '\\' { 2 } else { 1 };
+        let length =
+            word.map_or_else(|| rest.chars().take(taken).map(char::len_utf8).sum(), |word| word.len());
+        let (piece, after) = rest.split_at(length);
+        match word {
+            Some(word) => quoted.extend(["\"", word, "\""]),
+            None => quoted.push_str(piece),
+        }
+        in_string ^= first == '"';
+        rest = after;
+    }
+    quoted.into()
+}
+
+/// Returns a number, which may be a text; `None` if it is none or not finite.
+fn number(value: &Value) -> Option<f64> {
+    let number = match value {
+        Value::String(text) => text.trim().parse().ok(),
+        value => value.as_f64(),
+    };
+    number.filter(|number: &f64| number.is_finite())
+}
+
+/// Returns a value as messages show it.
+fn shown(value: &Value) -> String {
+    let text = value.to_string();
+    if text.chars().count() > 40 { "no number".to_owned() } else { text.trim_matches('"').to_owned() }
 }
 
 struct Reader<'a> {
@@ -129,8 +169,9 @@ impl Frame<'_> {
             None | Some(Value::Null) => return Ok(None),
             Some(value) => value,
         };
-        let number = value.as_f64().filter(|number| number.is_finite());
-        number.map(Some).ok_or_else(|| self.wrong(format!("{key} is {value}"), "write a number"))
+        number(value)
+            .map(Some)
+            .ok_or_else(|| self.wrong(format!("{key} is {}", shown(value)), "write a number"))
     }
 
     /// Returns a number of the frame, or else of the file.
@@ -204,20 +245,29 @@ impl Frame<'_> {
         Ok(DraftCamera { tan_half_x: 0.5 * width / x, shift, pixel_height: x / y, ..placed })
     }
 
-    /// Returns the camera in its place, and whether the matrix is a rotation with a translation.
+    /// Returns the camera in its place, and whether the matrix is a rotation with a scale and a translation.
     fn placed(&self) -> Result<(DraftCamera, bool), SceneError> {
         let rows = self.own.get("transform_matrix").and_then(Value::as_array);
         let remedy = "write four rows of four numbers, the last row 0, 0, 0, 1";
         let wrong = || self.wrong("there is no valid transform_matrix", remedy);
-        let row = |row: &Value| -> Option<[f64; 4]> {
-            let numbers: Option<Vec<f64>> = row.as_array()?.iter().map(Value::as_f64).collect();
-            numbers?.try_into().ok().filter(|row: &[f64; 4]| row.iter().all(|number| number.is_finite()))
-        };
-        let rows: Option<Vec<[f64; 4]>> = rows.ok_or_else(wrong)?.iter().map(row).collect();
         let rows = rows.ok_or_else(wrong)?;
-        let [x, y, z] = match rows[..] {
+        let mut entries = rows.iter().filter_map(Value::as_array).flatten();
+        if let Some(bad) = entries.find(|entry| number(entry).is_none()) {
+            return Err(self.wrong(format!("the transform_matrix holds {}", shown(bad)), "write numbers"));
+        }
+        let row = |row: &Value| -> Option<[f64; 4]> {
+            let numbers: Option<Vec<f64>> = row.as_array()?.iter().map(number).collect();
+            numbers?.try_into().ok()
+        };
+        let rows: Option<Vec<[f64; 4]>> = rows.iter().map(row).collect();
+        let is_one = |w: f64| (w - 1.0).abs() < 1e-6;
+        let [x, y, z] = match rows.ok_or_else(wrong)?[..] {
             [x, y, z] => [x, y, z],
-            [x, y, z, [0.0, 0.0, 0.0, w]] if (w - 1.0).abs() < 1e-6 => [x, y, z],
+            [x, y, z, [0.0, 0.0, 0.0, w]] if is_one(w) => [x, y, z],
+            [[.., 0.0], [.., 0.0], [.., 0.0], [.., w]] if is_one(w) => {
+                let what = "the transform_matrix has its translation in the last row";
+                return Err(self.wrong(what, "transpose it: the translation belongs to the last column"));
+            }
             _ => return Err(wrong()),
         };
         let axes: [DVec3; 4] = std::array::from_fn(|i| DVec3::new(x[i], y[i], z[i]));
@@ -230,8 +280,9 @@ impl Frame<'_> {
             );
         };
         let up = right.cross(forward);
-        let is_rotation =
-            [right, up, -forward].iter().zip(&axes).all(|(unit, axis)| (*axis - *unit).length() < SKEW);
+        let scale = axes[2].length();
+        let is_near = |(unit, axis): (&DVec3, &DVec3)| (*axis - *unit * scale).length() < SKEW * scale;
+        let is_rotation = [right, up, -forward].iter().zip(&axes).all(is_near);
         Ok((DraftCamera { origin: axes[3], forward, right, up, ..DraftCamera::default() }, is_rotation))
     }
 }

@@ -15,6 +15,8 @@ pub use crate::method::Outlook;
 /// Views of a list in the scene of a session.
 #[derive(Clone, Debug)]
 pub struct ListedViews {
+    /// Numbers of the views in the list, in rising order.
+    numbers: Vec<usize>,
     views: Vec<View>,
 }
 
@@ -30,20 +32,27 @@ impl ListedViews {
         resolution: impl Fn([u32; 2]) -> [u32; 2],
         crop: Option<[[u32; 2]; 2]>,
     ) -> Result<ListedViews, ListedViewsError> {
-        let place = |(number, view): (usize, SceneView)| {
+        let numbers = list.numbers().to_owned();
+        let place = |(&number, view): (&usize, SceneView)| {
             let film = resolution(view.resolution.unwrap_or(session.cameras.resolution));
             let framing = Framing { frame: None, resolution: Some(film), crop };
             let cameras = Cameras { still: view.camera, ..Cameras::default() };
             View::new(&cameras, &framing).map_err(|error| ListedViewsError::Film { number, error })
         };
         let cameras = list.in_scene(&session.world.scene)?;
-        let views: Result<Vec<View>, ListedViewsError> = (1..).zip(cameras).map(place).collect();
-        Ok(ListedViews { views: views? })
+        let views: Result<Vec<View>, ListedViewsError> = numbers.iter().zip(cameras).map(place).collect();
+        let views = views?;
+        Ok(ListedViews { numbers, views })
     }
 
     /// Returns the views in the order of the list.
     pub fn all(&self) -> &[View] {
         &self.views
+    }
+
+    /// Returns the view with a number of the list.
+    pub fn numbered(&self, number: usize) -> Option<&View> {
+        self.views.get(self.numbers.binary_search(&number).ok()?)
     }
 
     /// Finds the surfaces that the views see together. Chunks of `chunk` views share records; without it all do.
