@@ -3,7 +3,7 @@
 use super::denoise_args::DenoiseFileArgs;
 use super::exit::Failure;
 use super::outputs::{Inputs, OutputCheck, check_outputs};
-use super::{talk, threads};
+use super::{picture, talk, threads};
 use anyhow::anyhow;
 use base::film::{ExrFile, Image, ImageError, write_png};
 use render::denoise::{Denoiser, Guides, NOISY, NOISY_VARIANCE, guides};
@@ -24,10 +24,14 @@ pub fn run(args: DenoiseFileArgs) -> Result<(), Failure> {
             input.display()
         )));
     }
-    let color = file.color().map_err(Failure::input)?;
+    let mut color = file.color().map_err(Failure::input)?;
+    picture::mend(input, "", &mut color);
     let channels = file.channels();
     let guide = |names: &[&str]| -> Result<Option<(String, Image)>, ImageError> {
-        guides::layer(&channels, names).map(|name| file.layer(&name).map(|image| (name, image))).transpose()
+        let Some(name) = guides::layer(&channels, names) else { return Ok(None) };
+        let mut image = file.layer(&name)?;
+        picture::mend(input, &name, &mut image);
+        Ok(Some((name, image)))
     };
     let albedo = guide(&guides::ALBEDO).map_err(Failure::input)?;
     // The library does not use normals without albedo.

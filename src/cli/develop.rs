@@ -3,7 +3,7 @@
 use super::exit::{self, Failure};
 use super::outputs::{Inputs, OutputCheck, check_outputs};
 use super::png_args::ToneArgs;
-use super::talk;
+use super::{picture, talk};
 use base::film::{ExrFile, write_png};
 use clap::Args;
 use std::path::PathBuf;
@@ -27,7 +27,8 @@ pub fn run(args: DevelopArgs) -> Result<(), Failure> {
     let output = args.output.unwrap_or_else(|| args.input.with_extension("png"));
     check_outputs(None, Some(&output), OutputCheck::default())?;
     Inputs::new([&args.input]).check_apart([output.as_path()])?;
-    let color = ExrFile::read(&args.input).and_then(|file| file.color()).map_err(Failure::input)?;
+    let mut color = ExrFile::read(&args.input).and_then(|file| file.color()).map_err(Failure::input)?;
+    picture::mend(&args.input, "", &mut color);
     let look = args.tone.tone().look(&color);
     write_png(&output, &color, look).map_err(Failure::output)?;
     let (path, stops, view) = (output.display(), look.stops(), look.curve.name());

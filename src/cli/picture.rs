@@ -1,7 +1,8 @@
 //! Files of an image: OpenEXR, the tone-mapped PNG, and PNG files of layers for display.
 
 use super::exit::Failure;
-use base::film::{ExrFile, Film, Look, false_colour, write_exr, write_png, write_srgb8};
+use super::talk;
+use base::film::{ExrFile, Film, Image, Look, false_colour, write_exr, write_png, write_srgb8};
 use base::stats::StageTime;
 use std::path::{Path, PathBuf};
 
@@ -39,6 +40,17 @@ pub fn forget_circumstances(film: &mut Film) {
 pub fn beside(path: &Path) -> PathBuf {
     let extension = path.extension().map(|extension| extension.to_string_lossy());
     path.with_extension(format!("partial.{}", extension.unwrap_or_default()))
+}
+
+/// Replaces what is not finite in the image of a file, or in its `layer`, and warns of it.
+pub fn mend(path: &Path, layer: &str, image: &mut Image) {
+    let Some((count, [column, row])) = image.mend_nonfinite() else { return };
+    let of_layer = if layer.is_empty() { String::new() } else { format!(" of the layer `{layer}`") };
+    talk::warning(&format!(
+        "{}: {count} pixels{of_layer} are NaN or infinite, the first in column {column}, row {row}; NaN counts as 0, \
+         infinity as the largest half float; render the image again to remove the cause",
+        path.display()
+    ));
 }
 
 /// Returns true if the file is a partial image.

@@ -83,6 +83,11 @@ impl StillFiles {
     pub fn check(&self, check: OutputCheck, no_overwrite: bool) -> Result<(), Failure> {
         let png = self.png.as_ref().map(|(path, _)| path.as_path());
         outputs::check_outputs(self.exr.as_deref(), png, check)?;
+        // A partial image does not replace a file, and its name is longer.
+        for path in self.paths().filter(|path| path.exists()) {
+            let partial = picture::beside(path);
+            outputs::check_output(&partial, OutputCheck { may_stay: true, ..check })?;
+        }
         if no_overwrite { outputs::check_new(self.paths()) } else { Ok(()) }
     }
 

@@ -1,7 +1,7 @@
 //! `render --denoise` and `denoise`: with the library, left out where it is missing, and without.
 
 use super::{Finished, Sandbox, read};
-use lightsplat::film::{ExrFile, Image};
+use lightsplat::film::{ExrFile, Film, Image, write_exr};
 use lightsplat::math::Rgb;
 
 /// Renders the room with few paths.
@@ -33,6 +33,40 @@ fn without_library(sandbox: &Sandbox, arguments: &[&str]) -> Finished {
     let folder = sandbox.path("empty");
     std::fs::create_dir_all(&folder).unwrap();
     Finished::from(sandbox.command(arguments).env("OIDN_DIR", &folder).output().unwrap())
+}
+
+#[test]
+fn pixels_that_are_no_numbers_are_named_and_mended() {
+    let sandbox = Sandbox::new();
+    let mut image = Image::new(8, 4);
+    image.pixels.fill(Rgb::splat(0.5));
+    let mut write = |name: &str, bad: Option<f32>| {
+        if let Some(bad) = bad {
+            (image.pixels[11].y, image.pixels[13].x) = (bad, bad);
+        }
+        write_exr(&sandbox.path(name), &Film::new(image.clone())).unwrap();
+    };
+    write("good.exr", None);
+    write("inf.exr", Some(f32::INFINITY));
+    write("nan.exr", Some(f32::NAN));
+    let pixel = |name: &str| {
+        let run =
+            sandbox.run(&["develop", name, "-o", "a.png", "--exposure", "0", "--view", "standard"]).expect(0);
+        (image::open(sandbox.path("a.png")).unwrap().to_rgb8().get_pixel(3, 1).0, run.stderr)
+    };
+    let (good, stderr) = pixel("good.exr");
+    assert!(good[0] == good[1] && !stderr.contains("warning"), "{stderr}");
+    for (name, green) in [("nan.exr", 0), ("inf.exr", 255)] {
+        let (shown, stderr) = pixel(name);
+        let warning = format!("warning: {name}: 2 pixels are NaN or infinite, the first in column 3, row 1");
+        assert!(stderr.contains(&warning), "{stderr}");
+        assert_eq!(shown, [good[0], green, good[2]]);
+        let denoised = sandbox.run(&["denoise", name, "-o", "b.exr"]);
+        assert!(denoised.stderr.contains(&warning), "{}", denoised.stderr);
+        if denoised.code == Some(0) {
+            assert!(color(&sandbox, "b.exr").pixels.iter().all(|pixel| pixel.is_finite()));
+        }
+    }
 }
 
 #[test]

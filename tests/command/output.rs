@@ -206,7 +206,7 @@ fn write_protected_pictures_are_refused_before_rendering_and_may_stay() {
     }
 }
 
-/// Runs the command under a limit of 4096 or 8192 bytes a file, with SIGXFSZ ignored or not.
+/// Runs the command under a limit of 4096 or 8192 bytes per file, with SIGXFSZ ignored or not.
 fn limited(sandbox: &Sandbox, on_signal: &str) -> Finished {
     let script = format!("{on_signal} ulimit -c 0; ulimit -f 8; exec \"$0\" \"$@\"");
     let output = Command::new("sh")
@@ -224,22 +224,26 @@ fn a_disk_that_fills_up_ends_with_4_and_leaves_the_old_files_whole() {
     let sandbox = Sandbox::new();
     sandbox.render("a.exr", &[]).expect(0);
     let before = (read(&sandbox.path("a.exr")), read(&sandbox.path("a.png")));
-    let stderr = limited(&sandbox, "trap '' XFSZ;").expect(4).stderr;
-    assert!(stderr.contains("a.exr") && stderr.contains("an existing file is unchanged"), "{stderr}");
-    assert_eq!((read(&sandbox.path("a.exr")), read(&sandbox.path("a.png"))), before);
-    assert_eq!(sandbox.files(), ["a.exr", "a.png", "room.xml"]);
+    for on_signal in ["trap '' XFSZ;", ""] {
+        let stderr = limited(&sandbox, on_signal).expect(4).stderr;
+        assert!(stderr.contains("a.exr: File too large") && stderr.contains("is unchanged"), "{stderr}");
+        assert_eq!((read(&sandbox.path("a.exr")), read(&sandbox.path("a.png"))), before);
+        assert_eq!(sandbox.files(), ["a.exr", "a.png", "room.xml"]);
+    }
 }
 
-#[cfg(unix)]
 #[test]
-fn a_process_killed_while_it_writes_leaves_the_old_files_whole() {
+fn names_that_are_too_long_are_refused_before_the_render() {
     let sandbox = Sandbox::new();
-    sandbox.render("a.exr", &[]).expect(0);
-    let before = (read(&sandbox.path("a.exr")), read(&sandbox.path("a.png")));
-    // Unhandled, the signal kills the process at the write that exceeds the limit.
-    let killed = limited(&sandbox, "");
-    assert_eq!(killed.code, None, "{}", killed.stderr);
-    assert_eq!((read(&sandbox.path("a.exr")), read(&sandbox.path("a.png"))), before);
+    let of = |length: usize| "x".repeat(length - 4) + ".exr";
+    let long = ["--method", "path", "--spp", "1000000000"];
+    let refused =
+        sandbox.run(&[&["render", "room.xml", "-o", &of(256)][..], &long].concat()).expect(4).stderr;
+    assert!(refused.contains("too long"), "{refused}");
+    sandbox.render(&of(255), &["--spp", "1"]).expect(0);
+    // The name of a partial image, which would stand beside the complete one, is longer.
+    let again = sandbox.run(&[&["render", "room.xml", "-o", &of(255)][..], &long].concat()).expect(4).stderr;
+    assert!(again.contains("partial.exr") && again.contains("too long"), "{again}");
 }
 
 /// All features, by the names of their channels.

@@ -65,6 +65,11 @@ pub fn check_place(path: &Path) -> Result<(), ImageError> {
         Ok(present) if !present.is_dir() => return refuse(format!("{} is not a folder", folder.display())),
         Ok(_) => {}
     }
+    if let Err(error) = fs::symlink_metadata(&target)
+        && error.kind() != io::ErrorKind::NotFound
+    {
+        return refuse(format!("{error}; name another file"));
+    }
     let removed_on_drop = match temporary(&target) {
         Ok(temporary) => temporary,
         Err(error) => return refuse(format!("no file can be created in {}: {error}", folder.display())),
@@ -298,6 +303,10 @@ mod tests {
         check_writable(&path).unwrap();
         write_atomically(&path, |file| file.write_all(b"new")).unwrap();
         assert_eq!(fs::read_to_string(&path).unwrap(), "new");
+        for longer in ["x".repeat(256), "é".repeat(128), format!("{}/a.exr", "x".repeat(256))] {
+            let refused = check_place(&folder.path().join(longer)).unwrap_err().to_string();
+            assert!(refused.contains("too long"), "{refused}");
+        }
     }
 
     #[test]

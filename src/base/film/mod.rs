@@ -86,11 +86,31 @@ impl Image {
         self.pixels.iter().all(|pixel| *pixel == Rgb::ZERO)
     }
 
+    /// Mends an image from elsewhere: infinite channels become [`BRIGHTEST`], NaN and negative infinity 0.
+    ///
+    /// The result is the number of such pixels, and column and row of the first; `None` if there is none.
+    pub fn mend_nonfinite(&mut self) -> Option<(usize, [u32; 2])> {
+        let is_bad = |pixel: &Rgb| !pixel.is_finite();
+        let first = self.pixels.iter().position(is_bad)? as u32;
+        let count = self.pixels.iter().filter(|pixel| is_bad(pixel)).count();
+        for channel in self.pixels.iter_mut().flat_map(|pixel| pixel.as_mut()) {
+            *channel = match *channel {
+                value if value.is_finite() => value,
+                f32::INFINITY => BRIGHTEST,
+                _ => 0.0,
+            };
+        }
+        Some((count, [first % self.width.max(1), first / self.width.max(1)]))
+    }
+
     /// Replaces every non-finite channel by 0; returns their number.
     pub fn remove_nonfinite(&mut self) -> u64 {
         remove_nonfinite(self.pixels.iter_mut().flat_map(|pixel| pixel.as_mut()))
     }
 }
+
+/// Value of an infinite channel of an image from elsewhere: the largest half float.
+const BRIGHTEST: f32 = 65504.0;
 
 /// Replaces every non-finite number by 0; returns their number.
 fn remove_nonfinite<'a>(numbers: impl Iterator<Item = &'a mut f32>) -> u64 {
