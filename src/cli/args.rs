@@ -15,8 +15,9 @@ use super::values::{Bytes, ImageFormat, ProgressMode, counted, q_scale};
 use super::views_args::ViewsArgs;
 use super::{talk, threads, version};
 use clap::{Arg, ArgGroup, Args, CommandFactory, FromArgMatches, Parser, Subcommand, ValueEnum};
-use render::walk::{FileNames, FrameList, Q_SCALE, RetentionLimits};
-use std::ffi::OsString;
+use render::walk::{FileNames, FrameList};
+use std::env;
+use std::ffi::{OsStr, OsString};
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
@@ -56,8 +57,14 @@ impl Cli {
             true => arg,
             false => arg.allow_negative_numbers(true),
         };
+        // An empty variable counts as no variable, as scripts write it.
+        let is_empty = |variable: &OsStr| env::var_os(variable).is_some_and(|value| value.is_empty());
+        let set = |arg: Arg| match arg.get_env().is_some_and(is_empty) {
+            true => arg.env(None::<&'static str>),
+            false => arg,
+        };
         // Help names environment variables, and does not depend on their values.
-        let parsed = |arg: Arg| negative(arg.hide_env_values(true));
+        let parsed = |arg: Arg| negative(set(arg).hide_env_values(true));
         Cli::command().mut_subcommands(|command| shortened(command.mut_args(parsed)))
     }
 }
@@ -150,9 +157,9 @@ pub struct WalkArgs {
     /// and the images stay the same [default: one chunk]
     #[arg(long, value_name = "N", value_parser = counted)]
     pub chunk: Option<NonZeroUsize>,
-    /// Number of frames for which a record is kept while it lights nothing in view
-    #[arg(long, value_name = "FRAMES", default_value_t = RetentionLimits::default().idle_frames)]
-    pub idle_frames: u32,
+    /// Number of frames for which a record is kept while it lights nothing in view [default: 48]
+    #[arg(long, value_name = "FRAMES")]
+    pub idle_frames: Option<u32>,
     /// Memory limit of the records kept between frames, like 512M or 2G. Records unused for the longest time are
     /// removed first [default: 1G]
     #[arg(long, value_name = "BYTES", allow_hyphen_values = true)]
@@ -162,9 +169,9 @@ pub struct WalkArgs {
     #[arg(long)]
     pub no_reprojection: bool,
     /// Quantisation scale of the visibility model. Records may differ more where contrasts of the previous frame hide
-    /// the difference. 4 allows about 2 % on plain surfaces. 0 allows 2 % everywhere
-    #[arg(long, value_name = "SCALE", value_parser = q_scale, default_value_t = Q_SCALE)]
-    pub q_scale: f32,
+    /// the difference. 4 allows about 2 % on plain surfaces. 0 allows 2 % everywhere [default: 4]
+    #[arg(long, value_name = "SCALE", value_parser = q_scale)]
+    pub q_scale: Option<f32>,
     /// The method and its settings.
     #[command(flatten)]
     pub method: MethodArgs,

@@ -163,7 +163,7 @@ impl BatchRun {
         };
         match job {
             Job::Still(job) => render::still(&job, opened, span, &self.control),
-            Job::Walk(job) => walk::walk(&job, opened, span, &self.control),
+            Job::Walk(job) => walk::walk(*job, opened, span, &self.control),
         }
     }
 

@@ -1,5 +1,7 @@
 //! Options of reading a scene: its camera and light, and changes of both.
 
+use super::exit::Failure;
+use anyhow::anyhow;
 use clap::{Args, ValueEnum};
 use glam::DVec3;
 use readers::{EnvironmentChoice, Lighting, LoadOptions, UpAxis, Viewpoint};
@@ -93,6 +95,28 @@ impl ReadingArgs {
 }
 
 impl ReadingArgs {
+    /// Refuses options that place or choose the camera of a still, for a command that renders other `cameras`. With
+    /// `has_lenses`, those cameras have fields of view of their own.
+    ///
+    /// # Errors
+    /// If there is such an option.
+    pub fn check_unplaced(&self, cameras: &str, has_lenses: bool) -> Result<(), Failure> {
+        let given = [
+            ("--look-from", self.look_from.is_some()),
+            ("--look-at", self.look_at.is_some()),
+            ("--azimuth", self.azimuth.is_some()),
+            ("--elevation", self.elevation.is_some()),
+            ("--fov", has_lenses && self.fov.is_some()),
+        ];
+        match given.into_iter().find(|(_, is_given)| *is_given) {
+            Some((option, _)) => Err(Failure::usage(anyhow!(
+                "{option} changes the camera of a still, and this command renders {cameras}; leave {option} out, or use \
+                 lightsplat render"
+            ))),
+            None => Ok(()),
+        }
+    }
+
     /// Returns the options of the scene reader for a frame of the scene at `path`. Models of glTF alone have poses.
     pub fn options_at(self, path: &Path, frame: Option<usize>) -> LoadOptions {
         let extension = path.extension().map(|extension| extension.to_string_lossy().to_lowercase());

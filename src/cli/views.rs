@@ -5,10 +5,11 @@ use super::live::Previews;
 use super::outputs::{OutputCheck, check_new, check_output, check_outputs};
 use super::shots::{Shots, ViewFiles};
 use super::views_args::ViewsArgs;
-use super::walk_job::{WalkJob, goal};
+use super::walk_job::{self, WalkJob};
 use super::{talk, threads, walk};
 use anyhow::{Context, anyhow};
 use readers::ViewList;
+use render::session::Goal;
 use render::walk::{FrameList, RetentionLimits};
 use std::fs;
 use std::path::PathBuf;
@@ -16,7 +17,7 @@ use std::path::PathBuf;
 /// Runs the command.
 pub fn run(args: ViewsArgs) -> Result<(), Failure> {
     talk::start(args.picture.progress, args.picture.loudness(), "views");
-    walk::run_job(&job(args)?)
+    walk::run_job(job(args)?)
 }
 
 /// Checks the arguments and the list, and that the files can be written.
@@ -24,8 +25,13 @@ pub fn run(args: ViewsArgs) -> Result<(), Failure> {
 /// # Errors
 /// If the arguments or the list are wrong, or a file cannot be written.
 pub fn job(args: ViewsArgs) -> Result<WalkJob, Failure> {
+    args.picture.reading.check_unplaced(&format!("the cameras of {}", args.cameras.display()), true)?;
+    walk_job::check_records(&args.method, [("--memory-limit", args.memory_limit.is_some())])?;
     let views = listed(&args)?;
-    let goal = goal(&args.method, args.quality, &args.picture)?;
+    let goal = Goal {
+        denoise_quality: args.picture.denoise.quality(),
+        ..walk_job::goal(&args.method, args.quality, &args.picture)?
+    };
     let defaults = RetentionLimits::default();
     let check = OutputCheck { may_stay: args.picture.resume, is_dry: args.picture.dry_run };
     let no_overwrite = args.picture.no_overwrite;
@@ -64,7 +70,7 @@ pub fn job(args: ViewsArgs) -> Result<WalkJob, Failure> {
 /// If the list is wrong.
 pub fn files(args: &ViewsArgs) -> Result<Vec<PathBuf>, Failure> {
     let views = listed(args)?;
-    Ok(numbers(args.only.as_ref(), views.count()).map(|number| views.exr(number)).collect())
+    Ok(views.numbers(args.only.as_ref()).into_iter().map(|number| views.exr(number)).collect())
 }
 
 /// Reads the list.
@@ -72,27 +78,21 @@ fn listed(args: &ViewsArgs) -> Result<ViewFiles, Failure> {
     let options = args.picture.reading.clone().options();
     let list = ViewList::read(&args.cameras, &options).map_err(Failure::input)?;
     let views = ViewFiles { list, folder: args.output.clone(), exposes_each: args.exposure_per_view };
-    match args.only.as_ref().map(FrameList::last).filter(|last| *last > views.count()) {
+    match args.only.as_ref().map(FrameList::last).filter(|last| *last > views.last()) {
         Some(last) => Err(Failure::usage(anyhow!(
             "--only: there is no view {last}; {} has {} cameras, counted from 1",
             args.cameras.display(),
-            views.count()
+            views.last()
         ))),
         None => Ok(views),
     }
-}
-
-/// Returns the numbers of the views to render.
-fn numbers(only: Option<&FrameList>, count: usize) -> impl Iterator<Item = usize> {
-    let all = only.is_none().then_some(1..=count);
-    only.into_iter().flat_map(FrameList::iter).chain(all.into_iter().flatten())
 }
 
 /// Checks that the files can be written. The folder is made if it alone is missing, and the folders below it are.
 fn check_files(job: &WalkJob, check: OutputCheck, no_overwrite: bool) -> Result<(), Failure> {
     let Some(views) = job.shots.views() else { return Ok(()) };
     check_output(&views.folder.join("view.exr"), check)?;
-    for number in numbers(job.frames.as_ref(), views.count()) {
+    for number in views.numbers(job.frames.as_ref()) {
         let (exr, png) = job.files(number);
         if let Some(folder) = exr.parent().filter(|folder| !folder.exists()) {
             if check.is_dry {

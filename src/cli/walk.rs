@@ -30,11 +30,11 @@ use world::view::View;
 /// Runs the command.
 pub fn run(args: WalkArgs) -> Result<(), Failure> {
     talk::start(args.picture.progress, args.picture.loudness(), "walk");
-    run_job(&WalkJob::new(args)?)
+    run_job(WalkJob::new(args)?)
 }
 
 /// Runs a checked command: a walk, or the views of a list.
-pub fn run_job(job: &WalkJob) -> Result<(), Failure> {
+pub fn run_job(job: WalkJob) -> Result<(), Failure> {
     let control = Arc::new(Control::new());
     interrupt::cancel_on_signal(&control).context("cannot catch signals").map_err(Failure::render)?;
     threads::pool(job.threads)?.install(|| {
@@ -47,11 +47,15 @@ pub fn run_job(job: &WalkJob) -> Result<(), Failure> {
 ///
 /// # Errors
 /// If a frame cannot be rendered or written, or a signal interrupted the run.
-pub fn walk(job: &WalkJob, opened: &Opened, span: RunSpan, control: &Control) -> Result<(), Failure> {
+pub fn walk(mut job: WalkJob, opened: &Opened, span: RunSpan, control: &Control) -> Result<(), Failure> {
     let Opened { session, warnings, moves, .. } = opened;
     opened::print_warnings(job.shots.views().map_or(&[], |views| views.list.warnings()));
     let listed = job.listed(session)?;
     let listed = listed.as_ref();
+    if let Some(choice) = job.choose(session, listed, *moves, control) {
+        talk::note(&choice);
+    }
+    let job = &job;
     let chunks = job.plan(session, *moves)?;
     let inputs = Inputs::of(session);
     for number in chunks.iter().flat_map(|chunk| &chunk.frames) {
@@ -75,8 +79,10 @@ pub fn walk(job: &WalkJob, opened: &Opened, span: RunSpan, control: &Control) ->
         talk::event("frame", || json!({ "frame": number, "state": "skipped" }));
     }
     let count = chunks.iter().map(PlannedChunk::count).sum();
-    let outlook =
-        listed.filter(|_| count > 0).map(|listed| listed.outlook(session, job.chunk_size(*moves), control));
+    let shares_records = count > 0 && job.goal.method.as_walks().is_some();
+    let outlook = listed
+        .filter(|_| shares_records)
+        .map(|listed| listed.outlook(session, job.chunk_size(*moves), control));
     let outlook = outlook.as_ref();
     let progress = Watch::new(job.progress, RunProgress::new(count, Stages::of(&job.goal), span));
     let (warnings, said) = (warnings.len(), BTreeSet::new());

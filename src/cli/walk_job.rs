@@ -4,7 +4,7 @@ use super::args::WalkArgs;
 use super::exit::Failure;
 use super::live::Previews;
 use super::method_args::MethodArgs;
-use super::outputs::{OutputCheck, check_new, check_outputs};
+use super::outputs::{OutputCheck, check_new, check_output, check_outputs};
 use super::picture_args::{PictureArgs, StatsFormat};
 use super::plan_args::{PlanArgs, Quality};
 use super::shots::{Shots, ViewFiles};
@@ -12,11 +12,13 @@ use super::values::{ProgressMode, Resolution};
 use super::{job_key, threads};
 use anyhow::anyhow;
 use base::film::Tone;
+use base::progress::Control;
 use readers::LoadOptions;
 use render::session::{Goal, PlanGoal, Session};
+use render::walk::choice::{self, Sharing};
 use render::walk::chunk::{self, FrameChunk, Run};
 use render::walk::views::{ListedViews, ListedViewsError};
-use render::walk::{FrameList, RetentionLimits, saved};
+use render::walk::{FrameList, Q_SCALE, RetentionLimits, saved};
 use serde_json::json;
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
@@ -24,6 +26,9 @@ use world::view::{Framing, View};
 
 /// Frame whose pose a model takes when the scene of a walk is read.
 pub const FIRST_POSE: usize = 1;
+
+/// Extension of the files of records.
+pub const RECORDS: &str = "records";
 
 /// A validated walk: scene, method, frames and their files.
 #[derive(Debug)]
@@ -70,8 +75,17 @@ impl WalkJob {
     /// # Errors
     /// If the arguments are wrong or a file cannot be written.
     pub fn new(args: WalkArgs) -> Result<WalkJob, Failure> {
+        args.picture.reading.check_unplaced("the camera path of the scene", false)?;
+        let of_records = [
+            ("--memory-limit", args.memory_limit.is_some()),
+            ("--idle-frames", args.idle_frames.is_some()),
+            ("--q-scale", args.q_scale.is_some()),
+            ("--no-reprojection", args.no_reprojection),
+        ];
+        check_records(&args.method, of_records)?;
         let goal = goal(&args.method, args.quality, &args.picture)?;
         let defaults = RetentionLimits::default();
+        let q_scale = args.q_scale.unwrap_or(Q_SCALE);
         let bytes = args.memory_limit.map_or(defaults.bytes, |bytes| bytes.0);
         let no_overwrite = args.picture.no_overwrite;
         let check = OutputCheck { may_stay: args.picture.resume, is_dry: args.picture.dry_run };
@@ -87,10 +101,10 @@ impl WalkJob {
             dry_run: args.picture.dry_run,
             goal,
             limits: RetentionLimits {
-                idle_frames: args.idle_frames,
+                idle_frames: args.idle_frames.unwrap_or(defaults.idle_frames),
                 bytes,
                 reprojects: !args.no_reprojection,
-                q_scale: (args.q_scale > 0.0).then_some(args.q_scale),
+                q_scale: (q_scale > 0.0).then_some(q_scale),
             },
             threads: threads::count(args.picture.threads),
             stats: args.stats,
@@ -104,6 +118,7 @@ impl WalkJob {
         for frame in listed.chain(job.frames.is_none().then_some(1)) {
             let (exr, png) = job.files(frame);
             check_outputs(Some(&exr), png.as_deref(), check)?;
+            check_output(&exr.with_extension(RECORDS), OutputCheck { may_stay: true, ..check })?;
             if no_overwrite {
                 check_new([&exr].into_iter().chain(&png).map(PathBuf::as_path))?;
             }
@@ -132,6 +147,33 @@ impl WalkJob {
         })
     }
 
+    /// Chooses one method for all images, if the command leaves it open. The choice depends on the whole path or list,
+    /// so that every part of it has one method. Returns what there is to say.
+    pub fn choose(
+        &mut self,
+        session: &Session,
+        listed: Option<&ListedViews>,
+        moves: bool,
+        control: &Control,
+    ) -> Option<String> {
+        let path = || {
+            let window = View::new(&session.cameras, &self.film(session)).ok()?.window;
+            Some(session.cameras.path.iter().map(|camera| View { camera: *camera, window }).collect())
+        };
+        let views = listed.map_or_else(path, |listed| Some(listed.all().to_vec()))?;
+        let chunk = self.chunk.map_or(views.len(), NonZeroUsize::get);
+        let sharing = match self.shots {
+            _ if moves || chunk < 2 => Sharing::Nothing,
+            Shots::Path(_) => Sharing::Frames,
+            Shots::Views(_) if self.reproducible => Sharing::Nothing,
+            Shots::Views(_) => Sharing::Views,
+        };
+        let choice = choice::of_series(session, &views, &self.goal, sharing, control);
+        let method = choice.map_or(self.goal.method, |choice| choice.method);
+        self.goal = Goal { method, may_choose: false, ..self.goal.clone() };
+        choice.map(|choice| choice.text())
+    }
+
     /// Returns the view of a frame. `listed` has the views of a list.
     ///
     /// # Errors
@@ -142,7 +184,7 @@ impl WalkJob {
         session: &Session,
         listed: Option<&ListedViews>,
     ) -> Result<View, Failure> {
-        if let Some(view) = listed.and_then(|listed| listed.all().get(frame.checked_sub(1)?)) {
+        if let Some(view) = listed.and_then(|listed| listed.numbered(frame)) {
             return Ok(*view);
         }
         let framing = Framing { frame: Some(frame), ..self.film(session) };
@@ -161,10 +203,7 @@ impl WalkJob {
     /// If the scene has no camera path, or a frame lies beyond it.
     fn numbers(&self, session: &Session) -> Result<Vec<usize>, Failure> {
         if let Some(views) = self.shots.views() {
-            return Ok(match &self.frames {
-                Some(list) => list.iter().collect(),
-                None => (1..=views.count()).collect(),
-            });
+            return Ok(views.numbers(self.frames.as_ref()));
         }
         let frames = session.cameras.path.len();
         let scene = self.scene.display();
@@ -212,7 +251,7 @@ impl WalkJob {
         let views = self.shots.views();
         let size = self.chunk_size(moves);
         let key = views.map_or(key.clone(), |views| job_key::of_views(&key, &views.list, views.exposes_each));
-        let length = views.map_or(session.cameras.path.len(), ViewFiles::count);
+        let length = views.map_or(session.cameras.path.len(), ViewFiles::last);
         let chunks = chunk::chunks(&numbers, size, length);
         Ok(chunks.into_iter().map(|chunk| self.planned(chunk, &key)).collect())
     }
@@ -238,7 +277,22 @@ impl WalkJob {
     /// Returns the file of the records of a chunk; `None` if no frame can follow.
     pub fn records_file(&self, chunk: &PlannedChunk) -> Option<PathBuf> {
         let first = chunk.frames.first().filter(|_| chunk.frames.len() > 1 || !chunk.ends)?;
-        Some(self.shots.exr(*first).with_extension("records"))
+        Some(self.shots.exr(*first).with_extension(RECORDS))
+    }
+}
+
+/// Refuses `options`, of which some are given, for a method without records that stay from image to image.
+///
+/// # Errors
+/// If such an option is given.
+pub fn check_records<const N: usize>(method: &MethodArgs, options: [(&str, bool); N]) -> Result<(), Failure> {
+    let method = method.method()?;
+    match options.into_iter().find(|(_, is_given)| *is_given && method.as_walks().is_none()) {
+        Some((option, _)) => Err(Failure::usage(anyhow!(
+            "{option} has no effect with --method {}, which keeps nothing from image to image; leave {option} out",
+            method.name()
+        ))),
+        None => Ok(()),
     }
 }
 
@@ -250,7 +304,7 @@ pub fn goal(method: &MethodArgs, quality: Option<Quality>, picture: &PictureArgs
     let plan = PlanArgs { quality, ..PlanArgs::default() };
     let goal = Goal {
         method: plan.method(method.method()?, &method.pinned())?,
-        may_choose: false,
+        may_choose: method.is_open(),
         plan: PlanGoal::AsSet,
         features: picture.aov.iter().copied().collect(),
         denoise: picture.denoise.denoise(),

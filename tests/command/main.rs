@@ -26,6 +26,7 @@ mod tev;
 mod usage;
 mod verify;
 mod views;
+mod views_choice;
 mod walk;
 
 use std::path::{Path, PathBuf};

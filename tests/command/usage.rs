@@ -16,6 +16,20 @@ fn help_and_version_are_data_and_no_error() {
     assert!(help.stderr.is_empty());
 }
 
+#[test]
+fn empty_variables_count_as_none() {
+    let sandbox = Sandbox::new();
+    let render =
+        ["render", "room.xml", "-o", "a.exr", "--method", "path", "--spp", "1", "--resolution", "8x8"];
+    let run = |threads: &str| {
+        let mut command = sandbox.command(&render);
+        command.env("LIGHTSPLAT_THREADS", threads).env("LIGHTSPLAT_PROGRESS", "");
+        super::Finished::from(command.output().unwrap())
+    };
+    run("").expect(0);
+    assert!(run("many").expect(2).stderr.contains("many"));
+}
+
 #[cfg(target_os = "linux")]
 #[test]
 fn help_that_cannot_be_printed_ends_with_4() {

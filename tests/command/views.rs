@@ -16,7 +16,7 @@ const VIEWS: [(&str, [f64; 3], [f64; 3]); 5] = [
 ];
 
 /// Names of the images of the views.
-const NAMES: [&str; 5] = ["train/r_0", "train/r_1", "test/r_0", "up/r_3", "train/r_0_2"];
+pub(super) const NAMES: [&str; 5] = ["train/r_0", "train/r_1", "test/r_0", "up/r_3", "train/r_0_2"];
 
 fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
@@ -41,7 +41,7 @@ fn transforms(views: &[(&str, [f64; 3], [f64; 3])]) -> String {
     serde_json::json!({ "camera_angle_x": angle, "w": 96, "h": 64, "frames": frames }).to_string()
 }
 
-fn sandbox() -> Sandbox {
+pub(super) fn sandbox() -> Sandbox {
     let sandbox = Sandbox::new();
     fs::write(sandbox.path("path.toml"), PATH).unwrap();
     fs::write(sandbox.path("cameras.json"), transforms(&VIEWS)).unwrap();
@@ -56,20 +56,20 @@ fn arguments<'a>(more: &[&'a str]) -> Vec<&'a str> {
     base.into_iter().chain(own).chain(more.iter().copied()).collect()
 }
 
-fn views(sandbox: &Sandbox, more: &[&str]) -> Finished {
+pub(super) fn views(sandbox: &Sandbox, more: &[&str]) -> Finished {
     sandbox.run(&arguments(more))
 }
 
-fn exr(sandbox: &Sandbox, name: &str) -> ExrFile {
+pub(super) fn exr(sandbox: &Sandbox, name: &str) -> ExrFile {
     ExrFile::read(&sandbox.path(&format!("out/{name}.exr"))).unwrap()
 }
 
-fn colour(sandbox: &Sandbox, name: &str) -> lightsplat::film::Image {
+pub(super) fn colour(sandbox: &Sandbox, name: &str) -> lightsplat::film::Image {
     exr(sandbox, name).color().unwrap()
 }
 
 /// Returns all files below `out`, without those that kills leave.
-fn files(sandbox: &Sandbox) -> Vec<String> {
+pub(super) fn files(sandbox: &Sandbox) -> Vec<String> {
     let (mut folders, mut found) = (vec![sandbox.path("out")], Vec::new());
     while let Some(folder) = folders.pop() {
         for entry in fs::read_dir(folder).into_iter().flatten() {
@@ -96,7 +96,7 @@ fn bytes(sandbox: &Sandbox) -> Vec<(String, Vec<u8>)> {
         .collect()
 }
 
-fn clear(sandbox: &Sandbox) {
+pub(super) fn clear(sandbox: &Sandbox) {
     fs::remove_dir_all(sandbox.path("out")).unwrap();
 }
 
@@ -357,6 +357,31 @@ fn batches_list_chunks_of_views_and_render_any_of_them() {
         let failed = sandbox.run(&["batch", "job.toml"]);
         assert!(failed.code != Some(0) && failed.stderr.contains(expected), "{views}: {}", failed.stderr);
     }
+}
+
+#[test]
+fn a_wrong_camera_is_left_out_and_the_other_views_keep_their_numbers() {
+    let sandbox = sandbox();
+    let mut list: serde_json::Value = serde_json::from_str(&transforms(&VIEWS)).unwrap();
+    list["frames"][1]["transform_matrix"][0][3] = "BAD".into();
+    fs::write(sandbox.path("cameras.json"), list.to_string().replace("\"BAD\"", "-Infinity")).unwrap();
+    let run = |more: &[&str]| {
+        let base = ["views", "path.toml", "cameras.json", "-o", "out", "--method", "path", "--spp", "1"];
+        sandbox.run(&[&base, more].concat())
+    };
+    let stderr = run(&[]).expect(0).stderr;
+    assert!(
+        stderr.contains("frame 2 (\"./train/r_1.png\"): the transform_matrix holds -Infinity"),
+        "{stderr}"
+    );
+    assert!(stderr.contains("4 views rendered") && files(&sandbox).len() == 8, "{stderr}");
+    assert_eq!(exr(&sandbox, "test/r_0").metadata().number("frame"), Some(3.0));
+    clear(&sandbox);
+    run(&["--only", "2-3"]).expect(0);
+    assert_eq!(files(&sandbox), ["test/r_0.exr", "test/r_0.png"]);
+    clear(&sandbox);
+    assert!(run(&["--strict"]).expect(3).stderr.contains("frame 2"));
+    assert!(run(&["--only", "6"]).expect(2).stderr.contains("no view 6"));
 }
 
 #[test]

@@ -166,6 +166,30 @@ fn resuming_leaves_whole_frames_alone_and_does_others_anew() {
 }
 
 #[test]
+fn an_open_method_is_chosen_once_for_the_whole_path() {
+    let sandbox = sandbox();
+    let open = |frames: &str, more: &[&str]| {
+        let base = ["walk", "path.toml", "-o", "f/a.##.exr", "--resolution", "48x32", "--frames", frames];
+        sandbox.run(&[&base, more].concat()).expect(0).stderr
+    };
+    let chosen = |stderr: &str| -> Vec<String> {
+        stderr.lines().filter(|line| line.starts_with("Method: ")).map(str::to_owned).collect()
+    };
+    let first = open("1-3", &[]);
+    let choice = chosen(&first);
+    if first.contains("not denoised") {
+        return eprintln!("skipped: no denoiser");
+    }
+    assert!(choice.len() == 1, "{first}");
+    let image = |n: u32| ExrFile::read(&sandbox.path(&format!("f/a.{n:02}.exr"))).unwrap().color().unwrap();
+    let whole = image(3);
+    let resumed = open("1-4", &["--resume"]);
+    assert!(chosen(&resumed) == choice && resumed.contains("1 frames rendered, 3 existed"), "{resumed}");
+    fs::remove_file(sandbox.path("f/a.03.exr")).unwrap();
+    assert!(chosen(&open("1-4", &["--resume"])) == choice && image(3) == whole);
+}
+
+#[test]
 fn frames_do_not_depend_on_threads() {
     let sandbox = sandbox();
     let colours = |threads| {

@@ -55,6 +55,38 @@ pub struct MethodChoice {
     pub seldom: f64,
 }
 
+/// Work of both methods for images of one quality.
+struct Compared {
+    by_cache: f64,
+    by_paths: f64,
+    /// Paths per pixel.
+    spp: f64,
+}
+
+impl MethodChoice {
+    /// Describes the choice and its reason for users.
+    pub fn text(&self) -> String {
+        self.text_with(self.method.spp())
+    }
+
+    /// Describes the choice, if the final image has so many samples per pixel.
+    pub fn text_with(&self, spp: u32) -> String {
+        let (name, other) = match self.method {
+            Method::Path(_) => (format!("path with denoising, {spp} samples per pixel"), "the cache"),
+            _ => ("cache".to_owned(), "path tracing"),
+        };
+        let ahead = self.ahead;
+        let why = match self.reason {
+            Reason::Work => format!("{other} would need about {ahead:.1}x the work for the same quality"),
+            Reason::NoTime => format!(
+                "neither method meets the time, and the cheapest image by {other} would need about {ahead:.1}x the work"
+            ),
+            Reason::Missed => format!("{other} did not reach the required error"),
+        };
+        format!("Method: {name} ({why})")
+    }
+}
+
 /// Chooses between the methods, from their pilot.
 pub struct Chooser {
     /// Number of triangles of the scene. The price of a ray depends on it.
@@ -157,11 +189,38 @@ impl Chooser {
 
     /// Chooses the cheaper method on a film of so many pixels.
     fn cheaper(&self, cache: &Method, pixels: u64) -> MethodChoice {
+        self.by_work(cache, self.work(cache, pixels), pixels)
+    }
+
+    /// Chooses one method for a series of images, of which `choosers` have pilots. An image of the cache takes the
+    /// share `of_still` of the work of a still.
+    pub fn for_series(choosers: &[Chooser], cache: &Method, of_still: f64) -> Option<MethodChoice> {
+        let first = choosers.first()?;
+        let pixels = |chooser: &Chooser| chooser.film_pixels.max(MIN_PIXELS);
+        let works = || choosers.iter().map(|chooser| chooser.work(cache, pixels(chooser)));
+        let mean = |value: fn(&Compared) -> f64| {
+            works().map(|work| value(&work)).sum::<f64>() / choosers.len() as f64
+        };
+        let work = Compared {
+            by_cache: of_still * mean(|work| work.by_cache),
+            by_paths: mean(|work| work.by_paths),
+            spp: mean(|work| work.spp).round(),
+        };
+        Some(first.by_work(cache, work, pixels(first)))
+    }
+
+    /// Returns the work of both methods for an image with the quality of `cache`.
+    fn work(&self, cache: &Method, pixels: u64) -> Compared {
         let work = ExpectedWork::new(self.triangles, pixels);
         let spp = self.paths_like(cache, pixels).round();
+        let (by_cache, by_paths) = (work.of_cache(&self.pilot, cache), work.of_paths(&self.pilot, spp));
+        Compared { by_cache, by_paths, spp }
+    }
+
+    /// Chooses the method that takes less work.
+    fn by_work(&self, cache: &Method, work: Compared, pixels: u64) -> MethodChoice {
+        let Compared { by_cache, by_paths, spp } = work;
         let paths = path::Settings { spp: spp.clamp(1.0, f64::from(u32::MAX)) as u32, ..self.paths };
-        let by_cache = work.of_cache(&self.pilot, cache);
-        let by_paths = work.of_paths(&self.pilot, spp);
         match by_paths < by_cache {
             true => self.choice(cache, Method::Path(paths), by_cache / by_paths, pixels),
             false => self.choice(cache, *cache, by_paths / by_cache, pixels),
@@ -204,6 +263,24 @@ mod tests {
     /// Creates a chooser with the pilot of a box lit by an area light.
     fn in_box() -> Chooser {
         chooser(36, [0.0018, 0.2], [1.7, 4.5])
+    }
+
+    #[test]
+    fn a_series_has_one_method_and_sharing_makes_it_the_cache_sooner() {
+        let cache = Method::default();
+        let [calm, noisy] = [[0.0018, 0.2], [0.2, 0.3]].map(|variances| chooser(36, variances, [1.7, 4.5]));
+        assert!(Chooser::for_series(&[], &cache, 1.0).is_none());
+        let alone = noisy.as_good_as(&cache);
+        let series =
+            |choosers: &[Chooser], of_still| Chooser::for_series(choosers, &cache, of_still).unwrap();
+        let lone = series(std::slice::from_ref(&noisy), 1.0);
+        assert!((lone.method, lone.ahead) == (alone.method, alone.ahead));
+        let both = [calm, noisy];
+        let is_path = |of_still: f64| is_path(&series(&both, of_still));
+        assert!(is_path(1e3) && !is_path(1e-3));
+        let spp = |choosers: &[Chooser]| series(choosers, 1e6).method.spp();
+        let [first, second] = [spp(&both[..1]), spp(&both[1..])];
+        assert!((first.min(second)..=first.max(second)).contains(&spp(&both)) && first != second);
     }
 
     fn is_path(choice: &MethodChoice) -> bool {

@@ -3,7 +3,7 @@
 use super::frame::Remark;
 use super::notes::Notes;
 use crate::method::Method;
-use crate::plan::{MethodChoice, Reason};
+use crate::plan::MethodChoice;
 use crate::verify::{Estimate, Verified, VerifySettings};
 use base::film::Metadata;
 use base::stats::Stats;
@@ -97,19 +97,8 @@ pub(super) fn add_choice(
     notes: &mut Notes,
 ) {
     let Notes { stats, remarks } = notes;
-    let MethodChoice { paths_a_sample, rays_ratio, ahead, pilot_rays, seldom, reason, .. } = *choice;
-    let (name, other) = match choice.method {
-        Method::Path(_) => (format!("path with denoising, {spp} samples per pixel"), "the cache"),
-        _ => ("cache".to_owned(), "path tracing"),
-    };
-    let why = match reason {
-        Reason::Work => format!("{other} would need about {ahead:.1}x the work for the same quality"),
-        Reason::NoTime => format!(
-            "neither method meets the time, and the cheapest image by {other} would need about {ahead:.1}x the work"
-        ),
-        Reason::Missed => format!("{other} did not reach the required error"),
-    };
-    remarks.push(Remark::Note(format!("Method: {name} ({why})")));
+    let MethodChoice { paths_a_sample, rays_ratio, ahead, pilot_rays, seldom, .. } = *choice;
+    remarks.push(Remark::Note(choice.text_with(spp)));
     if is_measured && seldom > MAX_SELDOM {
         remarks.push(Remark::Warning(format!(
             "path tracing, which measures the error, seldom finds {:.0} % of the light (small emitters seen through glass \

@@ -34,7 +34,7 @@ pub fn over_views(session: &Session, views: &[View], control: &Control) -> f32 {
 }
 
 /// Returns at most `most` of `count` indices, evenly spread from the first to the last.
-fn spread(count: usize, most: usize) -> impl Iterator<Item = usize> {
+pub(super) fn spread(count: usize, most: usize) -> impl Iterator<Item = usize> {
     let last = count.saturating_sub(1);
     let mut chosen: Vec<usize> = (0..most).map(|i| (i * last + (most - 1) / 2) / (most - 1)).collect();
     chosen.dedup();

@@ -20,9 +20,11 @@
 //! Footprints shrink at differences that are visible against the contrasts of the previous frame (see
 //! [`transport::perception`]).
 //!
-//! [`frames`] lists frames, [`names`] names their files, [`exposure`] computes one exposure for a whole path.
-//! [`posed`] has the cameras of models that move, whose frames share nothing else.
+//! [`choice`] chooses a method for a whole path or list. [`frames`] lists frames, [`names`] names their files,
+//! [`exposure`] computes one exposure for a whole path. [`posed`] has the cameras of models that move, whose frames
+//! share nothing else.
 
+pub mod choice;
 pub mod chunk;
 pub mod exposure;
 pub mod frames;
