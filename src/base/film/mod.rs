@@ -3,6 +3,7 @@
 //! [`Film`] holds the images and attributes of a frame's file. [`write_exr`] and [`write_png`] replace a file
 //! completely or not at all. [`metrics`] measures the difference of two images, and [`heatmap`] shows it.
 
+mod agx;
 pub mod atomic;
 mod error;
 mod exr_edit;
@@ -13,7 +14,9 @@ mod exr_read;
 mod exr_tests;
 mod exr_write;
 pub mod false_colour;
+mod filmic;
 pub mod heatmap;
+mod lattice;
 mod layer;
 mod layers;
 mod leftovers;

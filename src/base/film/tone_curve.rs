@@ -2,15 +2,12 @@
 //!
 //! Sources:
 //! - neutral: Khronos PBR Neutral tone mapper, specification of 2024. Colours up to 0.76 keep hue and saturation.
-//! - agx: AgX of T. Sobotka, in the polynomial approximation by B. Wrensch, *Minimal AgX Implementation*, 2023.
-//! - filmic: J. Hable, *Filmic Tonemapping Operators*, 2010 (Uncharted 2).
+//! - agx, filmic: Blender's views of these names, see [`super::agx`] and [`super::filmic`].
 //! - standard: clip at 1, then sRGB.
-//!
-//! Deviations: the range of AgX ends at its white, so brighter radiance is white.
 
 use super::tone::srgb_encode;
+use super::{agx, filmic};
 use crate::math::Rgb;
-use glam::{Mat3, Vec3};
 
 /// A curve from exposed radiance to display values.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -20,9 +17,9 @@ pub enum ToneCurve {
     Neutral,
     /// Clip at 1, and sRGB.
     Standard,
-    /// AgX: soft contrast; bright colours turn to white.
+    /// Blender's AgX: soft contrast; bright colours turn to white.
     Agx,
-    /// Hable's filmic curve: strong contrast in shadows and highlights, by channel.
+    /// Blender's Filmic: bright colours keep their hue, and turn to white at 6 stops above grey.
     Filmic,
 }
 
@@ -47,8 +44,8 @@ impl ToneCurve {
         let linear = match self {
             ToneCurve::Standard => exposed,
             ToneCurve::Neutral => neutral(finite(exposed)),
-            ToneCurve::Agx => return agx(finite(exposed)),
-            ToneCurve::Filmic => filmic(finite(exposed)),
+            ToneCurve::Agx => return agx::display(finite(exposed)),
+            ToneCurve::Filmic => return filmic::display(finite(exposed)),
         };
         Rgb::from(linear.to_array().map(srgb_encode))
     }
@@ -79,43 +76,6 @@ fn neutral(color: Rgb) -> Rgb {
     (color * (compressed / peak)).lerp(Rgb::splat(compressed), white)
 }
 
-/// Returns the sRGB-encoded display colour of AgX.
-fn agx(color: Rgb) -> Rgb {
-    const INSET: Mat3 = Mat3::from_cols(
-        Vec3::new(0.842_479_06, 0.042_328_24, 0.042_375_65),
-        Vec3::new(0.078_433_6, 0.878_468_64, 0.078_433_6),
-        Vec3::new(0.079_223_745, 0.079_166_13, 0.879_143),
-    );
-    const OUTSET: Mat3 = Mat3::from_cols(
-        Vec3::new(1.196_879, -0.052_896_85, -0.052_971_635),
-        Vec3::new(-0.098_020_88, 1.151_903_1, -0.098_043_45),
-        Vec3::new(-0.099_029_74, -0.098_961_18, 1.151_073_7),
-    );
-    // Stops of black and white relative to 1.
-    const STOPS: [f32; 2] = [-12.473_93, 4.026_069];
-    let curve = |channel: f32| {
-        let x = ((channel.log2() - STOPS[0]) / (STOPS[1] - STOPS[0])).clamp(0.0, 1.0);
-        let powers = [-0.00232, 0.1191, 0.4298, -6.868, 31.96, -40.14, 15.5];
-        powers.iter().rev().fold(0.0, |sum, power| sum * x + power)
-    };
-    let encoded = OUTSET * Vec3::from((INSET * color).to_array().map(curve));
-    encoded.clamp(Rgb::ZERO, Rgb::ONE)
-}
-
-/// Returns the linear display colour of Hable's curve.
-fn filmic(color: Rgb) -> Rgb {
-    // Exposure before the curve, and the radiance after it that becomes white.
-    const BIAS: f32 = 2.0;
-    const WHITE: f32 = 11.2;
-    let curve = |x: f32| {
-        let [a, b, c, d, e, f] = [0.15, 0.50, 0.10, 0.20, 0.02, 0.30];
-        // The curve is flat beyond; the products of larger numbers overflow.
-        let x = x.min(1e6);
-        (x * (a * x + c * b) + d * e) / (x * (a * x + b) + d * f) - e / f
-    };
-    Rgb::from(color.to_array().map(|channel| curve(channel * BIAS) / curve(WHITE)))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -138,20 +98,72 @@ mod tests {
         assert!((red - expected).length() < 1e-4, "{red} {expected}");
     }
 
+    /// Colours of a chart, and their codes in Blender 5.0 by AgX and by Filmic. A colour is given by the levels of its
+    /// channels: level 0 lies 10 stops below middle grey, and level 15 6.5 stops above it.
+    #[rustfmt::skip]
+    const CHART: [[[u8; 3]; 3]; 49] = [
+        [[3, 3, 3], [2, 2, 2], [7, 7, 7]],
+        [[6, 6, 6], [28, 28, 28], [37, 37, 37]],
+        [[9, 9, 9], [114, 114, 114], [124, 124, 124]],
+        [[12, 12, 12], [212, 212, 212], [222, 222, 222]],
+        [[15, 15, 15], [255, 255, 255], [255, 255, 255]],
+        [[15, 0, 0], [255, 206, 199], [255, 18, 18]],
+        [[0, 15, 0], [226, 255, 218], [18, 255, 18]],
+        [[0, 0, 15], [197, 210, 255], [18, 18, 255]],
+        [[15, 15, 0], [255, 253, 227], [255, 255, 18]],
+        [[0, 15, 15], [235, 254, 254], [18, 255, 255]],
+        [[15, 0, 15], [254, 228, 255], [255, 18, 255]],
+        [[9, 0, 0], [105, 4, 0], [124, 0, 0]],
+        [[0, 9, 0], [22, 106, 0], [0, 124, 0]],
+        [[0, 0, 9], [0, 33, 107], [0, 0, 124]],
+        [[12, 0, 6], [237, 95, 82], [222, 0, 37]],
+        [[6, 12, 0], [142, 213, 119], [37, 222, 0]],
+        [[9, 9, 0], [114, 109, 0], [124, 124, 0]],
+        [[2, 9, 9], [14, 113, 114], [3, 124, 124]],
+        [[4, 9, 7], [2, 108, 49], [13, 124, 58]],
+        [[12, 13, 4], [212, 230, 171], [222, 240, 13]],
+        [[13, 9, 10], [247, 167, 170], [240, 124, 162]],
+        [[11, 7, 15], [209, 214, 255], [196, 65, 255]],
+        [[4, 7, 8], [2, 51, 74], [13, 58, 88]],
+        [[10, 8, 5], [158, 76, 6], [162, 88, 22]],
+        [[4, 4, 4], [6, 6, 6], [13, 13, 13]],
+        [[5, 15, 6], [226, 255, 218], [33, 255, 45]],
+        [[11, 13, 6], [197, 231, 168], [196, 240, 37]],
+        [[7, 9, 7], [53, 109, 47], [58, 124, 58]],
+        [[15, 6, 14], [255, 221, 244], [255, 45, 250]],
+        [[13, 14, 5], [230, 244, 201], [240, 250, 22]],
+        [[8, 11, 9], [122, 186, 126], [88, 196, 124]],
+        [[11, 12, 11], [192, 211, 190], [196, 222, 196]],
+        [[4, 15, 10], [227, 255, 220], [26, 255, 163]],
+        [[14, 7, 8], [255, 181, 174], [250, 58, 88]],
+        [[14, 6, 4], [255, 179, 169], [250, 37, 13]],
+        [[8, 12, 5], [148, 213, 122], [88, 222, 22]],
+        [[14, 8, 6], [255, 181, 171], [250, 88, 37]],
+        [[10, 14, 14], [220, 245, 245], [162, 250, 250]],
+        [[14, 7, 4], [255, 180, 169], [250, 58, 13]],
+        [[13, 12, 13], [231, 216, 231], [240, 222, 240]],
+        [[4, 4, 10], [1, 53, 155], [13, 13, 162]],
+        [[8, 9, 15], [199, 212, 255], [92, 126, 255]],
+        [[6, 10, 7], [54, 151, 51], [37, 162, 58]],
+        [[7, 13, 5], [179, 232, 163], [58, 240, 22]],
+        [[7, 5, 5], [45, 16, 14], [58, 22, 22]],
+        [[7, 12, 10], [156, 212, 166], [58, 222, 162]],
+        [[9, 6, 13], [147, 158, 244], [124, 37, 240]],
+        [[13, 6, 4], [254, 143, 129], [240, 37, 13]],
+        [[7, 5, 13], [130, 154, 245], [58, 22, 240]],
+    ];
+
     #[test]
-    fn filmic_and_agx_have_their_published_values() {
-        // Hable's curve: black stays, 11.2 / 2 is white. At .5 the value is f(1) / f(11.2).
-        assert!(filmic(Rgb::ZERO).length() < 1e-6);
-        assert!((filmic(Rgb::splat(5.6)) - Rgb::ONE).length() < 1e-5);
-        let f = |x: f64| (x * (0.15 * x + 0.05) + 0.004) / (x * (0.15 * x + 0.5) + 0.06) - 1.0 / 15.0;
-        assert!((f64::from(filmic(Rgb::splat(0.5)).x) - f(1.0) / f(11.2)).abs() < 1e-5);
-        // AgX: the curve maps middle grey to 18 % of the light of a display with the exponent 2.4.
-        let grey = agx(Rgb::splat(0.18)).x;
-        assert!((grey.powf(2.4) - 0.18).abs() < 0.01, "{grey}");
-        assert!(agx(Rgb::ZERO).length() < 1e-6 && agx(Rgb::splat(1e9)).min_element() > 0.97);
-        // Strong red turns towards white rather than to flat red.
-        let [dim, bright] = [0.5, 30.0].map(|level| agx(Rgb::new(level, 0.0, 0.0)));
-        assert!(bright.y > dim.y + 0.2, "{dim} {bright}");
+    fn agx_and_filmic_have_blenders_codes() {
+        for [levels, agx, filmic] in CHART {
+            let level = |level: u8| 0.18 * (16.5 * f32::from(level) / 15.0 - 10.0).exp2();
+            let color = Rgb::from(levels.map(level));
+            for (view, codes) in [(ToneCurve::Agx, agx), (ToneCurve::Filmic, filmic)] {
+                let found = view.display(color).to_array().map(|value| (255.0 * value).round() as u8);
+                let near = (0..3).all(|channel| found[channel].abs_diff(codes[channel]) <= 1);
+                assert!(near, "{view:?} of {levels:?}: {found:?}, not {codes:?}");
+            }
+        }
     }
 
     #[test]
