@@ -16,7 +16,8 @@ def render(scene, output=None, *, progress=None, **options):
     `output` keeps the image as this OpenEXR file, with its PNG beside it, unless `png` names another.
     `progress` is called with the part of the run that is done, 0 to 1.
     `options` are those of `lightsplat render`, with `_` for `-`. `True` is a flag. Sequences are lists:
-    `resolution=(640, 360)`, `look_from=(0, 1, 4)`, `aov=["depth", "normal"]`, `denoise=False`.
+    `resolution=(640, 360)`, `look_from=(0, 1, 4)`, `aov=["depth", "normal"]`, `denoise=False`. With `background="none"`,
+    the image is premultiplied, and `layers["A"]` is its alpha.
 
     Raises `UsageError`, `SceneError`, `OutputError` or another `Error`, with the message of the program.
     """

@@ -5,7 +5,7 @@ use super::exit::Failure;
 use super::outputs::{Inputs, OutputCheck, check_outputs};
 use super::{picture, talk, threads};
 use anyhow::anyhow;
-use base::film::{ExrFile, Image, ImageError, write_png};
+use base::film::{ExrFile, Image, ImageError, Shown, write_png};
 use render::denoise::{Denoiser, Guides, NOISY, NOISY_VARIANCE, guides};
 use std::path::PathBuf;
 
@@ -41,6 +41,7 @@ pub fn run(args: DenoiseFileArgs) -> Result<(), Failure> {
         normal: normal.as_ref().map(|(_, image)| image),
         // Guides of other renderers may be noisy, especially in blurred reflections.
         noise_free: file.metadata().text("method").is_some(),
+        keeps_background: true,
     };
     let (library, clean) = threads::pool(threads::count(args.threads))?
         .install(|| {
@@ -58,16 +59,17 @@ pub fn run(args: DenoiseFileArgs) -> Result<(), Failure> {
     }
     file.set("denoised", library.as_str());
     let mut said = format!("wrote {}", output.display());
-    let shown = file.to_rec_709(clean).map_err(Failure::input)?;
-    let exposed = png.map(|path| (path, args.png.tone.tone().look(&shown)));
+    let (color, alpha) = (file.to_rec_709(clean).map_err(Failure::input)?, file.alpha());
+    let shown = Shown { color: &color, alpha: alpha.as_ref() };
+    let exposed = png.map(|path| (path, args.png.tone.tone().look(shown)));
     if let Some((path, look)) = &exposed {
         file.set("png_exposure", f64::from(look.stops()));
         file.set("png_view", look.curve.name());
-        said += &format!(" and {} (exposure {:+.2} EV)", path.display(), look.stops());
+        said += &format!(" and {} ({})", path.display(), look.said());
     }
     file.write(&output).map_err(Failure::output)?;
     if let Some((path, look)) = &exposed {
-        write_png(path, &shown, *look).map_err(Failure::output)?;
+        write_png(path, shown, *look).map_err(Failure::output)?;
     }
     let guided_by = if guided_by.is_empty() { "no layer".to_owned() } else { guided_by.join(" and ") };
     talk::note(&format!("denoised with {library}, guided by {guided_by}"));

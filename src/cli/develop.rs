@@ -4,7 +4,7 @@ use super::exit::{self, Failure};
 use super::outputs::{Inputs, OutputCheck, check_outputs};
 use super::png_args::ToneArgs;
 use super::{picture, talk};
-use base::film::{ExrFile, write_png};
+use base::film::{ExrFile, Shown, write_png};
 use clap::Args;
 use std::path::PathBuf;
 
@@ -27,13 +27,15 @@ pub fn run(args: DevelopArgs) -> Result<(), Failure> {
     let output = args.output.unwrap_or_else(|| args.input.with_extension("png"));
     check_outputs(None, Some(&output), OutputCheck::default())?;
     Inputs::new([&args.input]).check_apart([output.as_path()])?;
-    let mut color = ExrFile::read(&args.input).and_then(|file| file.color()).map_err(Failure::input)?;
+    let file = ExrFile::read(&args.input).map_err(Failure::input)?;
+    let mut color = file.color().map_err(Failure::input)?;
     picture::mend(&args.input, "", &mut color);
-    let look = args.tone.tone().look(&color);
-    write_png(&output, &color, look).map_err(Failure::output)?;
-    let (path, stops, view) = (output.display(), look.stops(), look.curve.name());
-    let said =
-        format!("wrote {path} ({}x{}, exposure {stops:+.2} EV, view {view})", color.width, color.height);
+    let alpha = file.alpha();
+    let shown = Shown { color: &color, alpha: alpha.as_ref() };
+    let look = args.tone.tone().look(shown);
+    write_png(&output, shown, look).map_err(Failure::output)?;
+    let (path, exposure, view) = (output.display(), look.said(), look.curve.name());
+    let said = format!("wrote {path} ({}x{}, {exposure}, view {view})", color.width, color.height);
     talk::wrote(&said, &[output]);
     Ok(())
 }

@@ -4,14 +4,14 @@ use super::args::RenderArgs;
 use super::exit::Failure;
 use super::live::Previews;
 use super::outputs::{Inputs, OutputCheck};
-use super::picture_args::StatsFormat;
+use super::picture_args::{PictureArgs, StatsFormat};
 use super::still_files::StillFiles;
 use super::values::{ProgressMode, Resolution};
-use super::{job_key, threads, verify};
+use super::{job_key, talk, threads, verify};
 use anyhow::anyhow;
 use base::stats::Stopwatch;
 use readers::LoadOptions;
-use render::session::{Goal, Session};
+use render::session::{Feature, Goal, Session};
 use serde_json::json;
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
@@ -52,6 +52,29 @@ pub struct RenderJob {
     pub progress: ProgressMode,
 }
 
+/// Warns of layers that a PNG alone cannot hold; an error with `--strict`.
+fn say_left_out(picture: &PictureArgs) -> Result<(), Failure> {
+    let names: Vec<&str> = picture.aov.iter().map(|feature| feature.name()).collect();
+    if names.is_empty() {
+        return Ok(());
+    }
+    let transparent = match picture.aov.contains(&Feature::Alpha) {
+        true => "; a PNG with alpha needs --background none",
+        false => "",
+    };
+    let said = format!(
+        "a PNG has no layers, so --aov {} is not written; name an OpenEXR file with -o{transparent}",
+        names.join(",")
+    );
+    match picture.reading.strict {
+        true => Err(Failure::usage(anyhow!(said))),
+        false => {
+            talk::warning(&said);
+            Ok(())
+        }
+    }
+}
+
 impl RenderJob {
     /// Checks the arguments, and that the results can be written. The run began with `run`.
     ///
@@ -64,6 +87,10 @@ impl RenderJob {
         let verify = verify::settings(&args.verify, &method, args.plan.error.is_some());
         let plan = args.plan.goal(&method, pinned, args.verify.verify_samples, run)?;
         let files = StillFiles::new(&args)?;
+        if files.exr.is_none() {
+            say_left_out(&args.picture)?;
+        }
+        let averaging = args.picture.averaging();
         let dry_run = args.picture.dry_run;
         let check = OutputCheck { may_stay: args.picture.resume, is_dry: dry_run };
         files.check(check, args.picture.no_overwrite)?;
@@ -76,6 +103,7 @@ impl RenderJob {
             method,
             may_choose,
             plan,
+            averaging,
             features: args.picture.aov.into_iter().collect(),
             denoise: args.picture.denoise.denoise(),
             denoise_quality: args.picture.denoise.quality(),

@@ -11,7 +11,8 @@ use std::path::Path;
 /// Returns the key of an image of `session` with `goal` by this version of the program. `more` holds further
 /// dependencies. The key does not depend on whether the denoiser is installed.
 pub fn of(session: &Session, goal: &Goal, more: Value) -> String {
-    let Goal { method, may_choose, plan, features, denoise_quality, keep_noisy, verify, .. } = goal;
+    let Goal { method, may_choose, plan, features, averaging, denoise_quality, keep_noisy, verify, .. } =
+        goal;
     let keys = |pinned: &[ScaledSetting]| pinned.iter().map(|setting| setting.key()).collect::<Vec<_>>();
     let plan = match plan {
         PlanGoal::AsSet => Value::Null,
@@ -27,7 +28,7 @@ pub fn of(session: &Session, goal: &Goal, more: Value) -> String {
         "may_choose": may_choose,
         "settings": method.settings(),
         "wanted": plan,
-        "features": format!("{features:?}"),
+        "features": format!("{features:?} {averaging:?}"),
         "denoise": goal.denoises(),
         "denoise_quality": format!("{denoise_quality:?}"),
         "keep_noisy": keep_noisy,

@@ -9,7 +9,7 @@ use super::outputs::{self, OutputCheck};
 use super::tev::Tev;
 use super::{interrupt, talk};
 use anyhow::anyhow;
-use base::film::{Image, ImageError, Look, Tone, write_png};
+use base::film::{Film, Image, ImageError, Look, Tone, write_png};
 use base::live::LiveImage;
 use base::progress::Control;
 use std::path::{Path, PathBuf};
@@ -137,9 +137,9 @@ impl Showing<'_> {
     }
 
     /// Replaces the preview by the last image of a run.
-    pub fn last(&mut self, image: &Image) {
+    pub fn last(&mut self, film: &Film) {
         if let Some(file) = self.previews.file() {
-            self.report(write_png(file, image, self.previews.tone.look(image)));
+            self.report(write_png(file, film.shown(), self.previews.tone.look(film.shown())));
         }
     }
 

@@ -8,7 +8,7 @@ use super::outputs::{Inputs, OutputCheck, check_outputs};
 use super::talk;
 use anyhow::anyhow;
 use base::film::metrics::{rel_mse_of_variance, standard_error};
-use base::film::{ExrFile, Image, Metadata, SAMPLES, Weight, write_png};
+use base::film::{ExrFile, Image, Metadata, SAMPLES, Shown, Weight, write_png};
 use render::denoise::{NOISY, NOISY_VARIANCE};
 use render::method::path::PartialImage;
 use serde_json::Value;
@@ -42,15 +42,17 @@ pub fn run(args: MergeArgs) -> Result<(), Failure> {
     count_samples(&mut merged, &weights, color.pixels.len());
     let mut said = format!("wrote {}, merged from {} images", args.output.display(), weights.len());
     let mut written = vec![args.output.clone()];
-    let look = args.png.tone.tone().look(&color);
+    let alpha = merged.alpha();
+    let shown = Shown { color: &color, alpha: alpha.as_ref() };
+    let look = args.png.tone.tone().look(shown);
     if let Some(path) = &png {
         merged.set("png_exposure", f64::from(look.stops()));
         merged.set("png_view", look.curve.name());
-        said += &format!(", and {} (exposure {:+.2} EV)", path.display(), look.stops());
+        said += &format!(", and {} ({})", path.display(), look.said());
     }
     merged.write(&args.output).map_err(Failure::output)?;
     if let Some(path) = png {
-        write_png(&path, &color, look).map_err(Failure::output)?;
+        write_png(&path, shown, look).map_err(Failure::output)?;
         written.push(path);
     }
     talk::wrote(&said, &written);

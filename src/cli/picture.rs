@@ -14,8 +14,8 @@ pub struct Written {
     names: String,
     /// Width and height in pixels.
     size: [u32; 2],
-    /// Binary logarithm of the factor on radiance in the PNG.
-    exposure: Option<f32>,
+    /// Words for the exposure of the PNG.
+    exposure: Option<String>,
 }
 
 impl Written {
@@ -23,7 +23,7 @@ impl Written {
     pub fn said(&self, time: StageTime) -> String {
         let [width, height] = self.size;
         let seconds = time.wall_seconds;
-        let exposure = self.exposure.map_or(String::new(), |stops| format!(", exposure {stops:+.2} EV"));
+        let exposure = self.exposure.as_ref().map_or(String::new(), |exposure| format!(", {exposure}"));
         format!("wrote {} ({width}x{height}, {seconds:.1} s{exposure})", self.names)
     }
 }
@@ -84,11 +84,8 @@ pub fn write_exr_last(exr: &Path, png: Option<(&Path, Look)>, mut film: Film) ->
 
 /// Stores the exposure of the PNG in the film. Returns what there is to say, and the OpenEXR file.
 fn describe(exr: Option<&Path>, png: Option<(&Path, Look)>, film: &mut Film) -> Written {
-    let exposure = png.map(|(_, look)| look.stops());
-    if let Some(stops) = exposure {
-        film.metadata.set("png_exposure", f64::from(stops));
-    }
     if let Some((_, look)) = png {
+        film.metadata.set("png_exposure", f64::from(look.stops()));
         film.metadata.set("png_view", look.curve.name());
     }
     let names = exr.into_iter().chain(png.map(|(path, _)| path)).map(|path| path.display().to_string());
@@ -96,14 +93,14 @@ fn describe(exr: Option<&Path>, png: Option<(&Path, Look)>, film: &mut Film) -> 
         files: exr.map(Path::to_owned).into_iter().collect(),
         names: names.collect::<Vec<_>>().join(" and "),
         size: [film.window.width, film.window.height],
-        exposure,
+        exposure: png.map(|(_, look)| look.said()),
     }
 }
 
 /// Writes the PNG file, and a PNG file named after it for every layer for display. Returns the files.
 fn write_previews(png: Option<(&Path, Look)>, film: &Film) -> Result<Vec<PathBuf>, Failure> {
     let Some((picture, look)) = png else { return Ok(Vec::new()) };
-    write_png(picture, &film.color, look).map_err(Failure::output)?;
+    write_png(picture, film.shown(), look).map_err(Failure::output)?;
     let mut files = vec![picture.to_owned()];
     for layer in &film.layers {
         if let Some(bytes) = false_colour::show(layer, &film.color, look.factor) {

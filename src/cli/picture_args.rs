@@ -6,7 +6,7 @@ use super::reading_args::ReadingArgs;
 use super::values::{Crop, Loudness, ProgressMode, Resolution, feature};
 use super::{talk, threads};
 use clap::{Args, ValueEnum};
-use render::session::Feature;
+use render::session::{Averaging, Feature};
 
 /// Options of all commands that render images.
 #[derive(Debug, Args)]
@@ -26,6 +26,9 @@ pub struct PictureArgs {
     /// refracted surface
     #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = feature())]
     pub aov: Vec<Feature>,
+    /// Samples that these layers describe. Alpha is always a mean
+    #[arg(long, value_enum, value_name = "MODE", default_value_t)]
+    aov_mode: AovMode,
     /// Denoising.
     #[command(flatten)]
     pub denoise: DenoiseArgs,
@@ -61,6 +64,14 @@ pub struct PictureArgs {
 }
 
 impl PictureArgs {
+    /// Returns the samples that additional layers describe.
+    pub fn averaging(&self) -> Averaging {
+        match self.aov_mode {
+            AovMode::Mean => Averaging::Mean,
+            AovMode::First => Averaging::First,
+        }
+    }
+
     /// Returns how much is to be said.
     pub fn loudness(&self) -> Loudness {
         match (self.quiet, self.verbose) {
@@ -69,6 +80,16 @@ impl PictureArgs {
             (false, false) => Loudness::Normal,
         }
     }
+}
+
+/// Samples that layers describe.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+enum AovMode {
+    /// Albedo, normals and position are means over the pixel; depth and ids are those of its nearest surface
+    #[default]
+    Mean,
+    /// The first surface that the ray through the middle of the pixel hits, also if it is a mirror or glass
+    First,
 }
 
 /// Format of statistics.

@@ -21,9 +21,10 @@ pub struct PngArgs {
 /// Options of exposure and view.
 #[derive(Clone, Copy, Debug, Default, Args)]
 pub struct ToneArgs {
-    /// Exposure of PNG files in stops. `auto` maps the 90th percentile of luminance to 0.8. For a walk, the percentile
-    /// covers all frames
-    #[arg(short, long, value_name = "auto|EV", default_value_t, allow_negative_numbers = true)]
+    /// Exposure of PNG files. `auto` maps the 90th percentile of luminance to 0.8. `auto+1` is one stop brighter,
+    /// `auto-1` one stop darker. A number is absolute: radiance times 2^EV. For a walk, all frames count for the
+    /// percentile
+    #[arg(short, long, value_name = "auto|auto+STOPS|EV", default_value_t, allow_negative_numbers = true)]
     exposure: Exposure,
     /// Tone curve of PNG files
     #[arg(long, value_enum, value_name = "VIEW", default_value_t)]
@@ -38,9 +39,9 @@ enum NamedView {
     Neutral,
     /// sRGB, clipped at 1
     Standard,
-    /// AgX: soft contrast, bright colours turn white
+    /// Blender's AgX: soft contrast, bright colours turn white
     Agx,
-    /// Hable's filmic curve: strong contrast
+    /// Blender's Filmic: strong contrast, bright colours keep their hue
     Filmic,
 }
 

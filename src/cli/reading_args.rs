@@ -19,6 +19,11 @@ pub struct ReadingArgs {
     /// Rotation of --env about the upward axis in degrees, counter-clockwise seen from above
     #[arg(long, value_name = "DEGREES", requires = "env", value_parser = angle)]
     env_rotate: Option<f64>,
+    /// Background of the image. With none, the environment lights the scene, and appears in mirrors and through glass.
+    /// Where the camera would see it, the image is transparent: RGB and the layer A of the OpenEXR file are 0, and the
+    /// PNG has an alpha channel
+    #[arg(long, value_enum, value_name = "BACKGROUND", default_value_t)]
+    background: Background,
     /// Do not add a sky to a model without lights
     #[arg(long)]
     no_default_light: bool,
@@ -55,6 +60,16 @@ pub struct ReadingArgs {
     pub strict: bool,
 }
 
+/// Background of the image.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+enum Background {
+    /// The environment
+    #[default]
+    Environment,
+    /// Nothing: the image is transparent there
+    None,
+}
+
 /// Upward axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum UpAxisName {
@@ -83,6 +98,7 @@ impl ReadingArgs {
                 environment: self.env,
                 rotation: self.env_rotate.unwrap_or(0.0),
                 no_default: self.no_default_light,
+                hides_background: self.background == Background::None,
             },
             viewpoint: Viewpoint { from: self.look_from, at: self.look_at, fov: self.fov, around },
             most_copied: self.max_copied,
@@ -176,6 +192,7 @@ mod tests {
         assert_eq!((found.lighting.rotation, found.up), (90.0, Some(UpAxis::Z)));
         assert_eq!(found.viewpoint.from, Some(DVec3::new(-1.0, 2.0, 3.0)));
         assert_eq!(options("--azimuth=-45").unwrap().viewpoint.around, Some([-45.0, 20.0]));
+        assert!(options("--background none").unwrap().lighting.hides_background);
         assert_eq!(options("").unwrap(), LoadOptions::default());
     }
 

@@ -70,8 +70,8 @@ pub fn still(job: &RenderJob, opened: &Opened, span: RunSpan, control: &Control)
     let RenderedFrame { film, mut stats, facts, remarks, measured, complete, unverified, .. } = frame;
     say(&remarks);
     showing.rendered(&film.color);
-    showing.last(&film.color);
-    let exposed = files.png.as_ref().map(|(path, tone)| (path.as_path(), tone.look(&film.color)));
+    showing.last(&film);
+    let exposed = files.png.as_ref().map(|(path, tone)| (path.as_path(), tone.look(film.shown())));
     let written = stats.time(Stage::Write, || picture::write(files.exr.as_deref(), exposed, film))?;
     job.files.deliver(&written.said(job.run.elapsed()), &written.files)?;
     say(&measured);

@@ -6,8 +6,8 @@ use super::outputs::{Inputs, check_name};
 use super::talk;
 use anyhow::anyhow;
 use base::film::{atomic, write_srgb8};
-use image::RgbImage;
-use image::imageops::{replace, thumbnail};
+use image::imageops::{overlay, replace, thumbnail};
+use image::{DynamicImage, RgbImage, Rgba, RgbaImage};
 
 /// Gap between frames in pixels.
 const GAP: u32 = 4;
@@ -34,7 +34,7 @@ pub fn run(args: SheetArgs) -> Result<(), Failure> {
                 path.display()
             ))
         })?;
-        let picture = picture.into_rgb8();
+        let picture = on_grey(picture);
         let sheet = match &mut sheet {
             Some(sheet) => sheet,
             None => sheet.insert(Sheet::new(count, args.columns, args.width, picture.dimensions())?),
@@ -46,6 +46,13 @@ pub fn run(args: SheetArgs) -> Result<(), Failure> {
     write_srgb8(&args.output, size, image.as_raw()).map_err(Failure::output)?;
     talk::wrote(&format!("wrote {} with {count} frames", args.output.display()), &[args.output]);
     Ok(())
+}
+
+/// Returns a frame, with grey behind a transparent background.
+fn on_grey(picture: DynamicImage) -> RgbImage {
+    let mut ground = RgbaImage::from_pixel(picture.width(), picture.height(), Rgba([GREY, GREY, GREY, 255]));
+    overlay(&mut ground, &picture.into_rgba8(), 0, 0);
+    DynamicImage::ImageRgba8(ground).into_rgb8()
 }
 
 /// Sheet of frames in rows, from left to right and top to bottom.

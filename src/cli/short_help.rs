@@ -3,7 +3,8 @@
 use clap::{Arg, Command};
 
 /// Options that only `--help` shows, by the names of their fields. Settings of the methods say so themselves.
-const RARE: [&str; 19] = [
+const RARE: [&str; 20] = [
+    "aov_mode",
     "format",
     "inspect",
     "no_overwrite",

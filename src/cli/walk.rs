@@ -10,7 +10,7 @@ use super::walk_job::{FIRST_POSE, PlannedChunk, WalkJob};
 use super::walk_report::WalkReport;
 use super::{dry_run, interrupt, opened, picture, talk, threads};
 use anyhow::{Context, anyhow};
-use base::film::{Exposure, Film, Image, Look};
+use base::film::{Film, Image, Look};
 use base::progress::Control;
 use base::stats::{Stage, Stopwatch};
 use readers::LoadOptions;
@@ -253,7 +253,7 @@ impl Frames<'_> {
     ) -> Result<(), Failure> {
         let (exr, png) = self.job.files(number);
         let label = self.job.shots.label(number);
-        let look = self.look(&label, view, &frame.film.color)?;
+        let look = self.look(&label, view, &frame.film)?;
         frame.film.metadata.set("frame", number as f64);
         if let Some(views) = self.job.shots.views() {
             frame.film.metadata.set("view", views.title(number).as_str());
@@ -277,27 +277,22 @@ impl Frames<'_> {
     ///
     /// The exposure depends on frames of the whole path or list, so that every part has the same, unless each view is
     /// exposed by itself. `label` names the frame that needs it.
-    fn look(&mut self, label: &str, view: &View, image: &Image) -> Result<Option<Look>, Failure> {
+    fn look(&mut self, label: &str, view: &View, film: &Film) -> Result<Option<Look>, Failure> {
         let Some(tone) = self.job.tone else { return Ok(None) };
         if self.job.shots.views().is_some_and(|views| views.exposes_each) {
-            return Ok(Some(tone.look(image)));
+            return Ok(Some(tone.look(film.shown())));
         }
         if self.look.is_some() {
             return Ok(self.look);
         }
-        let factor = match (tone.exposure, self.shared.listed) {
-            (Exposure::Auto, None) => {
-                exposure::over_path(self.session, view.window.film, self.control).exp2()
-            }
-            (Exposure::Auto, Some(listed)) => {
-                exposure::over_views(self.session, listed.all(), self.control).exp2()
-            }
-            (Exposure::Ev(ev), _) => ev.exp2(),
-        };
+        let factor = tone.exposure.factor(|| match self.shared.listed {
+            None => exposure::over_path(self.session, view.window.film, self.control).exp2(),
+            Some(listed) => exposure::over_views(self.session, listed.all(), self.control).exp2(),
+        });
         if self.control.is_cancelled() {
             return Err(interrupted(label));
         }
-        self.look = Some(Look { factor, curve: tone.curve });
+        self.look = Some(Look { factor, curve: tone.curve, automatic: None });
         Ok(self.look)
     }
 

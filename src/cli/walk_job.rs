@@ -306,6 +306,7 @@ pub fn goal(method: &MethodArgs, quality: Option<Quality>, picture: &PictureArgs
         method: plan.method(method.method()?, &method.pinned())?,
         may_choose: method.is_open(),
         plan: PlanGoal::AsSet,
+        averaging: picture.averaging(),
         features: picture.aov.iter().copied().collect(),
         denoise: picture.denoise.denoise(),
         denoise_quality: Some(picture.denoise.quality().unwrap_or_default()),

@@ -47,7 +47,13 @@ pub(crate) fn kind_of(path: &Path) -> Option<FileKind> {
 
 /// Returns a text in UTF-16 as UTF-8, and other bytes as they are.
 fn in_utf8(bytes: Vec<u8>) -> Vec<u8> {
-    from_utf16(&bytes).map_or(bytes, String::into_bytes)
+    if let Some(text) = from_utf16(&bytes) {
+        return text.into_bytes();
+    }
+    match bytes.strip_prefix(b"\xEF\xBB\xBF") {
+        Some(text) => text.to_vec(),
+        None => bytes,
+    }
 }
 
 /// Reads a regular file.

@@ -140,7 +140,8 @@ pub fn load(path: &Path, options: &LoadOptions) -> Result<Loaded, SceneError> {
     options.viewpoint.apply(&mut draft, up, &Location::file(path))?;
     let (repairs, coordinates) = sanitize::sanitize(&mut draft, &mut log)?;
     divide::divide(&mut draft, &coordinates);
-    let (scene, mut cameras) = recentre::recentre(draft, &coordinates);
+    let (mut scene, mut cameras) = recentre::recentre(draft, &coordinates);
+    scene.hides_background = options.lighting.hides_background;
     // The camera stands still while the model moves on behind its path.
     if cameras.path.is_empty() || moves && cameras.path.len() < posed_frames {
         let last = cameras.path.last().copied().unwrap_or(cameras.still);

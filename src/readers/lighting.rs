@@ -116,6 +116,8 @@ pub struct Lighting {
     pub rotation: f64,
     /// True if a model without a lamp stays dark.
     pub no_default: bool,
+    /// True if the camera does not see the environment directly.
+    pub hides_background: bool,
 }
 
 impl Lighting {

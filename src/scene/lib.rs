@@ -55,6 +55,8 @@ pub struct Scene {
     pub max_depth: Option<u32>,
     /// True if the camera does not see emitters and the environment directly.
     pub hides_emitters: bool,
+    /// True if the camera does not see the environment directly: the background is transparent.
+    pub hides_background: bool,
     /// Triangle meshes: first those in the scene's coordinates, then the members of groups.
     pub meshes: Vec<Mesh>,
     /// Groups of meshes that are seen at several places. Their members are the last meshes, in order.

@@ -1,5 +1,6 @@
 //! The command as users and scripts call it: exit codes, files, streams, signals.
 
+mod background;
 mod batch;
 mod bench;
 mod blender;

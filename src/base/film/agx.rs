@@ -4,8 +4,8 @@
 //! 57^3 nodes was made. Blender's table is interpolated, so this formula is evaluated at the same nodes and
 //! interpolated likewise. The codes then differ from Blender's by at most 1 of 255.
 //!
-//! Steps: colours without negative channels in Rec. 2020; inset primaries; a sigmoid of the logarithm by channel; 60 %
-//! of the way back to the former hue; outset primaries; colours without negative channels in Rec. 709.
+//! Negative channels are removed in Rec. 2020. Inset primaries follow, then a sigmoid of the logarithm by channel. The
+//! hue goes back 60 % of the way. Outset primaries lead to Rec. 709, where negative channels are removed again.
 //!
 //! Units: exposed radiance, Rec. 709. The nodes are equidistant in stops, by the channels of FilmLight's E-Gamut.
 
@@ -97,7 +97,7 @@ fn sigmoid(channel: f32) -> f32 {
 
 /// Returns a colour raised until no channel is negative, and darkened to its former brightness.
 ///
-/// The brightness is the luminance, plus a share of the luminance that the opposite colour lacks of its largest channel.
+/// The brightness is the luminance, plus a share of what the opposite colour's luminance lacks to its largest channel.
 /// `share` returns that share for a luminance.
 fn without_negatives(color: Rgb, weights: Rgb, share: impl Fn(f32) -> f32) -> Rgb {
     let brightness = |color: Rgb| {

@@ -1,7 +1,7 @@
 //! Reader of flat OpenEXR files: half, float or integer channels, layered names, several parts.
 
 use super::exr_write::PREFIX;
-use super::{CameraMatrices, Fact, Image, ImageError, Metadata};
+use super::{ALPHA, BACKGROUND, CameraMatrices, Fact, Image, ImageError, Metadata, NO_BACKGROUND};
 use crate::exr_file::{
     ColourModel, ExrError, ExrSource, NoPicture, PartNames, PictureChannels, Primaries, from_luma_chroma,
     picture_channels,
@@ -145,6 +145,13 @@ impl ExrFile {
     /// If there are no such channels.
     pub fn layer(&self, name: &str) -> Result<Image, ImageError> {
         self.join(self.find(name, &LAYER).ok_or_else(|| self.missing(format!("layer `{name}`")))?)
+    }
+
+    /// Returns the share of each pixel that surfaces cover, if the background is hidden from the camera.
+    pub fn alpha(&self) -> Option<Image<f32>> {
+        let hidden = self.metadata().text(BACKGROUND) == Some(NO_BACKGROUND);
+        let alpha = hidden.then(|| self.layer(ALPHA).ok()).flatten()?;
+        Some(alpha.map(|pixel| pixel.x))
     }
 
     /// Returns the unsigned integers of the channel `name`, if there is one.

@@ -10,6 +10,12 @@
 use super::Image;
 use crate::math::Rgb;
 
+/// Layer of the share of each pixel that surfaces cover.
+pub const ALPHA: &str = "A";
+/// Fact about an image that says whether the camera sees the background.
+pub const BACKGROUND: &str = "background";
+/// Value of [`BACKGROUND`] if the background is hidden from the camera.
+pub const NO_BACKGROUND: &str = "none";
 /// Layer of the number of samples per pixel, if it varies.
 pub const SAMPLES: &str = "samples";
 

@@ -1,6 +1,6 @@
 //! Content of an image file: named layers over one window of the film, and metadata.
 
-use super::{Image, ImageError, Layer};
+use super::{ALPHA, BACKGROUND, Image, ImageError, Layer, NO_BACKGROUND, Pixels, Shown};
 use crate::film::Window;
 
 /// The image of one frame, with its layers and metadata.
@@ -39,6 +39,17 @@ impl Film {
     /// Replaces every non-finite channel of all images by 0; returns their number.
     pub fn remove_nonfinite(&mut self) -> u64 {
         self.color.remove_nonfinite() + self.layers.iter_mut().map(Layer::remove_nonfinite).sum::<u64>()
+    }
+
+    /// Returns the image for display. Its background is transparent if it is hidden from the camera.
+    pub fn shown(&self) -> Shown<'_> {
+        let hidden = self.metadata.text(BACKGROUND) == Some(NO_BACKGROUND);
+        let alpha = self.layers.iter().find(|layer| hidden && layer.name == ALPHA);
+        let alpha = alpha.and_then(|layer| match &layer.pixels {
+            Pixels::Scalar(alpha) => Some(alpha),
+            _ => None,
+        });
+        Shown { color: &self.color, alpha }
     }
 
     /// Checks that every image has the window's size and that the window lies on the film.

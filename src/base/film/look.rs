@@ -1,7 +1,7 @@
 //! Looks: exposure and curve of images for display.
 
-use super::Image;
-use super::tone::Exposure;
+use super::shown::Shown;
+use super::tone::{Exposure, auto_factor};
 use super::tone_curve::ToneCurve;
 use crate::math::Rgb;
 use std::fmt;
@@ -17,8 +17,10 @@ pub struct Tone {
 
 impl Tone {
     /// Returns the look for this image.
-    pub fn look(self, image: &Image) -> Look {
-        Look { factor: self.exposure.factor(image), curve: self.curve }
+    pub fn look<'a>(self, image: impl Into<Shown<'a>>) -> Look {
+        let automatic = auto_factor(image);
+        let own = matches!(self.exposure, Exposure::Ev(_)).then(|| automatic.log2());
+        Look { factor: self.exposure.factor(|| automatic), curve: self.curve, automatic: own }
     }
 }
 
@@ -35,6 +37,8 @@ pub struct Look {
     pub factor: f32,
     /// Curve to display values.
     pub curve: ToneCurve,
+    /// Automatic exposure in stops, if another is used and the image is known.
+    pub automatic: Option<f32>,
 }
 
 impl Look {
@@ -43,10 +47,24 @@ impl Look {
         self.factor.log2()
     }
 
-    /// Converts the image to 8-bit display values, row-major, three bytes per pixel.
-    pub fn to_bytes(self, image: &Image) -> Vec<u8> {
+    /// Returns the words for the exposure, with automatic exposure for comparison.
+    pub fn said(self) -> String {
+        let automatic = self.automatic.map_or(String::new(), |stops| format!(" (auto is {stops:+.2})"));
+        format!("exposure {:+.2} EV{automatic}", self.stops())
+    }
+
+    /// Converts the image to 8-bit display values, row-major: three bytes per pixel, or four if the background is
+    /// transparent. Colours of transparent pixels are not premultiplied.
+    pub fn to_bytes<'a>(self, image: impl Into<Shown<'a>>) -> Vec<u8> {
+        let image = image.into();
         let quantise = |value: f32| (value * 255.0 + 0.5) as u8;
-        let shown = |&p: &Rgb| self.curve.display(p * self.factor).to_array().map(quantise);
-        image.pixels.iter().flat_map(shown).collect()
+        let mut bytes = Vec::with_capacity(4 * image.color.pixels.len());
+        for (color, alpha) in image.colors() {
+            let alpha = quantise(alpha);
+            let color = if alpha > 0 { color } else { Rgb::ZERO };
+            bytes.extend(self.curve.display(color * self.factor).to_array().map(quantise));
+            bytes.extend(image.alpha.map(|_| alpha));
+        }
+        bytes
     }
 }

@@ -1,18 +1,22 @@
 //! 8-bit sRGB PNG files for display.
 
 use super::look::Look;
-use super::{Image, ImageError, atomic};
+use super::shown::Shown;
+use super::{ImageError, atomic};
 use ::image::codecs::png::PngEncoder;
 use ::image::{ExtendedColorType, ImageEncoder, ImageError as EncodeError};
 use std::io;
 use std::path::Path;
 
-/// Writes the display values of `image` to `path`, completely or not at all.
+/// Writes the display values of `image` to `path`, completely or not at all. A transparent background becomes the alpha
+/// channel.
 ///
 /// # Errors
 /// If writing fails.
-pub fn write_png(path: &Path, image: &Image, look: Look) -> Result<(), ImageError> {
-    write_srgb8(path, [image.width, image.height], &look.to_bytes(image))
+pub fn write_png<'a>(path: &Path, image: impl Into<Shown<'a>>, look: Look) -> Result<(), ImageError> {
+    let image = image.into();
+    let kind = if image.alpha.is_some() { ExtendedColorType::Rgba8 } else { ExtendedColorType::Rgb8 };
+    write(path, [image.color.width, image.color.height], &look.to_bytes(image), kind)
 }
 
 /// Writes display values, row-major, three bytes per pixel, to `path`, completely or not at all.
@@ -20,12 +24,14 @@ pub fn write_png(path: &Path, image: &Image, look: Look) -> Result<(), ImageErro
 /// # Errors
 /// If writing fails.
 pub fn write_srgb8(path: &Path, size: [u32; 2], bytes: &[u8]) -> Result<(), ImageError> {
+    write(path, size, bytes, ExtendedColorType::Rgb8)
+}
+
+fn write(path: &Path, size: [u32; 2], bytes: &[u8], kind: ExtendedColorType) -> Result<(), ImageError> {
     atomic::write_atomically(path, |file| {
-        PngEncoder::new(file).write_image(bytes, size[0], size[1], ExtendedColorType::Rgb8).map_err(|error| {
-            match error {
-                EncodeError::IoError(error) => error,
-                other => io::Error::other(other.to_string()),
-            }
+        PngEncoder::new(file).write_image(bytes, size[0], size[1], kind).map_err(|error| match error {
+            EncodeError::IoError(error) => error,
+            other => io::Error::other(other.to_string()),
         })
     })
     .map_err(|error| ImageError::Write { path: path.to_owned(), error })
@@ -34,7 +40,7 @@ pub fn write_srgb8(path: &Path, size: [u32; 2], bytes: &[u8]) -> Result<(), Imag
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::film::ToneCurve;
+    use crate::film::{Image, ToneCurve};
     use crate::math::Rgb;
 
     #[test]
@@ -43,10 +49,18 @@ mod tests {
         let path = folder.path().join("a.png");
         let mut image = Image::new(2, 1);
         image.pixels = vec![Rgb::new(0.25, 0.0, f32::NAN), Rgb::new(0.5, 2.0, -1.0)];
-        write_png(&path, &image, Look { factor: 2.0, curve: ToneCurve::Standard }).unwrap();
+        let look = Look { factor: 2.0, curve: ToneCurve::Standard, automatic: None };
+        write_png(&path, &image, look).unwrap();
         let read = ::image::open(&path).unwrap().into_rgb8();
         assert_eq!(read.dimensions(), (2, 1));
         // 0.5 in sRGB is 0.7354, 188 of 255.
         assert_eq!(read.into_raw(), [188, 0, 0, 255, 255, 0]);
+        // Half of the first pixel is covered, and nothing of the second.
+        let alpha = Image { width: 2, height: 1, pixels: vec![0.5, 0.0] };
+        image.pixels = vec![Rgb::new(0.125, 0.0, 0.0625), Rgb::ONE];
+        write_png(&path, Shown { color: &image, alpha: Some(&alpha) }, look).unwrap();
+        let read = ::image::open(&path).unwrap();
+        assert_eq!(read.color(), ::image::ColorType::Rgba8);
+        assert_eq!(read.into_rgba8().into_raw(), [188, 0, 137, 128, 0, 0, 0, 0]);
     }
 }

@@ -3,6 +3,7 @@
 //! Units: display values are in [0, 1], encoded with the sRGB curve.
 
 use super::Image;
+use super::shown::Shown;
 use crate::math::{Rgb, luminance};
 use std::fmt;
 use std::str::FromStr;
@@ -13,20 +14,25 @@ pub const AUTO_PERCENTILE: f64 = 0.9;
 pub const AUTO_TARGET: f64 = 0.8;
 
 /// Scale of radiance before clipping.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Exposure {
-    /// Automatic: the 90th percentile of luminance becomes 0.8.
-    #[default]
-    Auto,
+    /// So many stops over automatic: with 0, the 90th percentile of luminance becomes 0.8.
+    Auto(f32),
     /// Exposure value: radiance times 2^EV.
     Ev(f32),
 }
 
+impl Default for Exposure {
+    fn default() -> Exposure {
+        Exposure::Auto(0.0)
+    }
+}
+
 impl Exposure {
-    /// Returns the factor on radiance for this image.
-    pub fn factor(self, image: &Image) -> f32 {
+    /// Returns the factor on radiance, given the factor of automatic exposure.
+    pub fn factor(self, automatic: impl FnOnce() -> f32) -> f32 {
         match self {
-            Exposure::Auto => auto_factor(image),
+            Exposure::Auto(stops) => automatic() * stops.exp2(),
             Exposure::Ev(ev) => ev.exp2(),
         }
     }
@@ -36,20 +42,27 @@ impl FromStr for Exposure {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Exposure, String> {
-        if text.eq_ignore_ascii_case("auto") {
-            return Ok(Exposure::Auto);
-        }
-        match text.parse::<f32>() {
-            Ok(ev) if (-60.0..=60.0).contains(&ev) => Ok(Exposure::Ev(ev)),
-            _ => Err("expected `auto` or an exposure value between -60 and 60 stops".to_owned()),
-        }
+        let stops = |text: &str| text.parse::<f32>().ok().filter(|stops| (-60.0..=60.0).contains(stops));
+        let exposure = match text.split_at_checked(4) {
+            Some((auto, "")) if auto.eq_ignore_ascii_case("auto") => Some(Exposure::Auto(0.0)),
+            Some((auto, more)) if auto.eq_ignore_ascii_case("auto") => {
+                stops(more).filter(|_| more.starts_with(['+', '-'])).map(Exposure::Auto)
+            }
+            _ => stops(text).map(Exposure::Ev),
+        };
+        exposure.ok_or_else(|| {
+            "expected `auto`, stops over automatic exposure like `auto+1` or `auto-0.5`, or an exposure value between -60 \
+             and 60"
+                .to_owned()
+        })
     }
 }
 
 impl fmt::Display for Exposure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Exposure::Auto => f.write_str("auto"),
+            Exposure::Auto(0.0) => f.write_str("auto"),
+            Exposure::Auto(stops) => write!(f, "auto{stops:+}"),
             Exposure::Ev(ev) => write!(f, "{ev}"),
         }
     }
@@ -57,10 +70,11 @@ impl fmt::Display for Exposure {
 
 /// Returns the factor that maps the 90th percentile of luminance to 0.8.
 ///
-/// If that percentile is black, the brightest pixel is used; for a black image the factor is 1.
-pub fn auto_factor(image: &Image) -> f32 {
-    let mut luminances: Vec<f32> =
-        image.pixels.iter().map(|&p| luminance(p)).filter(|l| l.is_finite()).collect();
+/// If that percentile is black, the brightest pixel is used; for a black image the factor is 1. Pixels that only show a
+/// transparent background do not count.
+pub fn auto_factor<'a>(image: impl Into<Shown<'a>>) -> f32 {
+    let colors = image.into().colors().filter(|(_, alpha)| *alpha > 0.0).map(|(color, _)| color);
+    let mut luminances: Vec<f32> = colors.map(luminance).filter(|l| l.is_finite()).collect();
     let level = match percentile(&mut luminances, AUTO_PERCENTILE) {
         level if level > 0.0 => level,
         _ => luminances.iter().fold(0.0f32, |a, &b| a.max(b)) as f64,
@@ -179,10 +193,21 @@ mod tests {
 
     #[test]
     fn exposures_are_parsed_and_refused() {
-        assert_eq!("Auto".parse(), Ok(Exposure::Auto));
-        assert_eq!("-1.5".parse(), Ok(Exposure::Ev(-1.5)));
-        assert_eq!(Exposure::Ev(3.0).factor(&grey(&[1.0])), 8.0);
-        for bad in ["", "nan", "inf", "1e9", "two"] {
+        for (text, exposure) in [
+            ("Auto", Exposure::Auto(0.0)),
+            ("auto+1", Exposure::Auto(1.0)),
+            ("AUTO-0.5", Exposure::Auto(-0.5)),
+            ("-1.5", Exposure::Ev(-1.5)),
+            ("+1", Exposure::Ev(1.0)),
+        ] {
+            assert_eq!(text.parse(), Ok(exposure), "{text}");
+            assert_eq!(exposure.to_string().parse(), Ok(exposure), "{text}");
+        }
+        // Automatic exposure scales .4 to .8; one stop more doubles it.
+        let of_grey = |exposure: Exposure| exposure.factor(|| auto_factor(&grey(&[0.4])));
+        assert_eq!([Exposure::Ev(3.0), Exposure::Auto(1.0)].map(of_grey), [8.0, 4.0]);
+        for bad in ["", "nan", "inf", "1e9", "two", "auto1", "auto+", "auto+61", "auto+-1", "auto 1", "äuto"]
+        {
             assert!(bad.parse::<Exposure>().is_err(), "{bad}");
         }
     }

@@ -100,6 +100,6 @@ impl Picture {
 fn write(film: &Film) -> Result<(), String> {
     let folder = tempfile::tempdir().map_err(|error| error.to_string())?;
     write_exr(&folder.path().join("a.exr"), film).map_err(|error| error.to_string())?;
-    let look = Look { factor: 1.0, curve: ToneCurve::default() };
+    let look = Look { factor: 1.0, curve: ToneCurve::default(), automatic: None };
     write_png(&folder.path().join("a.png"), &film.color, look).map_err(|error| error.to_string())
 }

@@ -6,7 +6,7 @@
 //! Network and weights: the filter `RT` of Open Image Denoise for high dynamic range, at a [`Quality`] that [`effort`]
 //! chooses.
 //! Deviations: the network darkens images smaller than [`MIN_SIDE`] pixels, so their edges are extended to that size.
-//! Black images stay black.
+//! Black images stay black. Pixels without a surface may keep their value, of which the network knows nothing.
 //! Units: radiance as in the image. The filter finds the exposure itself. Images far from ordinary brightness, which it
 //! takes for black, are scaled by a power of two first.
 
@@ -45,6 +45,8 @@ pub struct Guides<'a> {
     pub normal: Option<&'a Image>,
     /// True if both are free of noise.
     pub noise_free: bool,
+    /// True if pixels without a surface, whose albedo and normal are 0, are to stay as they are.
+    pub keeps_background: bool,
 }
 
 impl Denoiser {
@@ -92,10 +94,16 @@ impl Denoiser {
             let rows = pixels.chunks_exact(extended[0]).take(size[1]);
             pixels = rows.flat_map(|row| &row[..size[0]]).copied().collect();
         }
-        pixels.par_iter_mut().zip(&*noisy).for_each(|(p, noisy)| {
+        let is_background = |pixel: usize| {
+            let is_nothing = |guide: &Image| guide.pixels.get(pixel) == Some(&Rgb::ZERO);
+            guides.keeps_background
+                && guides.albedo.is_some_and(is_nothing)
+                && guides.normal.is_some_and(is_nothing)
+        };
+        pixels.par_iter_mut().zip(&*noisy).enumerate().for_each(|(i, (p, noisy))| {
             let clean = *p / scale;
             // The result must be finite even if the network overflows.
-            *p = if clean.is_finite() { clean.max(Rgb::ZERO) } else { *noisy };
+            *p = if clean.is_finite() && !is_background(i) { clean.max(Rgb::ZERO) } else { *noisy };
         });
         Ok(Image { pixels, ..*color })
     }

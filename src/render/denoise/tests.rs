@@ -51,8 +51,8 @@ fn nothing_that_is_not_finite_or_is_negative_comes_out() {
     for guides in [
         Guides::default(),
         Guides { albedo: Some(&albedo), ..Guides::default() },
-        Guides { albedo: None, normal: Some(&normal), noise_free: true },
-        Guides { albedo: Some(&albedo), normal: Some(&normal), noise_free: true },
+        Guides { albedo: None, normal: Some(&normal), noise_free: true, ..Guides::default() },
+        Guides { albedo: Some(&albedo), normal: Some(&normal), noise_free: true, ..Guides::default() },
     ] {
         let clean = denoiser.denoise(&color, &guides, Quality::High).unwrap();
         assert!(clean.pixels.iter().all(|p| p.is_finite() && p.min_element() >= 0.0));
@@ -74,7 +74,8 @@ fn black_stays_black_and_guides_of_another_size_are_refused() {
 fn any_number_of_threads_gives_the_same_bits() {
     let color = noisy(150, 130, 1.0);
     let normal = noisy(150, 130, 0.5);
-    let guides = Guides { albedo: Some(&color), normal: Some(&normal), noise_free: true };
+    let guides =
+        Guides { albedo: Some(&color), normal: Some(&normal), noise_free: true, ..Guides::default() };
     let clean = [1, 2, 4].map(|threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| Some(denoiser()?.denoise(&color, &guides, Quality::High).unwrap()))
@@ -92,5 +93,27 @@ fn faint_and_bright_images_are_denoised_as_others() {
         for (p, q) in clean.pixels.iter().zip(&ordinary.pixels) {
             assert!((*p / factor - *q).abs().max_element() < 0.01, "{p} {q} {factor}");
         }
+    }
+}
+
+#[test]
+fn pixels_without_a_surface_keep_their_value() {
+    let Ok(denoiser) = Denoiser::load() else { return };
+    let (width, height) = (70, 66);
+    let seen = |i: usize| i % width > 20 && i / width > 30;
+    let image = |value: &dyn Fn(usize) -> Rgb| Image {
+        width: width as u32,
+        height: height as u32,
+        pixels: (0..width * height).map(value).collect(),
+    };
+    let noise = |i: usize| (i * 7919 % 101) as f32 / 50.0;
+    let color = image(&|i| if seen(i) { Rgb::splat(0.3 * noise(i)) } else { Rgb::ONE });
+    let [albedo, normal] =
+        [Rgb::splat(0.5), Rgb::Z].map(|value| image(&|i| if seen(i) { value } else { Rgb::ZERO }));
+    let guides =
+        Guides { albedo: Some(&albedo), normal: Some(&normal), noise_free: true, keeps_background: true };
+    let clean = denoiser.denoise(&color, &guides, Quality::Fast).unwrap();
+    for (i, pixel) in clean.pixels.iter().enumerate() {
+        assert!(if seen(i) { *pixel != color.pixels[i] } else { *pixel == Rgb::ONE }, "{i}: {pixel}");
     }
 }

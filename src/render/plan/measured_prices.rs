@@ -77,7 +77,7 @@ fn denoised_pixels(denoiser: &Denoiser, image: &Image) -> Vec<MeasuredPrice> {
         (Quality::Balanced, "pixel denoised, balanced quality"),
         (Quality::Fast, "pixel denoised, fast quality"),
     ];
-    let guides = Guides { albedo: Some(image), normal: Some(image), noise_free: true };
+    let guides = Guides { albedo: Some(image), normal: Some(image), noise_free: true, ..Guides::default() };
     let price = |(quality, name): (Quality, &'static str)| {
         let mut time = 0.0;
         // The first image of a quality takes longer.

@@ -4,10 +4,12 @@ use super::goal::Goal;
 use crate::cost::ScenePrices;
 use crate::denoise::{DenoiseError, Denoiser, Guides, NOISY, Quality, effort};
 use crate::method::{Method, Output};
-use base::film::{Image, Layer};
+use base::film::{ALPHA, Image, Layer, Pixels};
+use base::math::Rgb;
 use base::progress::Control;
 use base::stats::{Stage, Stats, Stopwatch, give_back};
-use transport::eye::{Feature, FeatureSettings, Features, SeenPixels};
+use scene::{Environment, Projection};
+use transport::eye::{Averaging, Feature, FeatureSettings, Features, SeenPixels};
 use world::World;
 use world::view::View;
 
@@ -24,6 +26,7 @@ pub struct Finish<'a> {
     control: &'a Control,
     /// Features that are kept as layers.
     features: Features,
+    averaging: Averaging,
     is_last: bool,
     keep_noisy: bool,
     denoiser: Option<Denoiser>,
@@ -51,8 +54,22 @@ impl<'a> Finish<'a> {
             Some(Err(error)) => (None, Some(error)),
             None => (None, None),
         };
-        let Goal { features, is_last, keep_noisy, denoise_quality: quality, .. } = *goal;
-        Finish { world, view, control, features, is_last, keep_noisy, denoiser, load_error, quality }
+        let Goal { mut features, averaging, is_last, keep_noisy, denoise_quality: quality, .. } = *goal;
+        if world.scene.hides_background {
+            features = features.with(Feature::Alpha);
+        }
+        Finish {
+            world,
+            view,
+            control,
+            features,
+            averaging,
+            is_last,
+            keep_noisy,
+            denoiser,
+            load_error,
+            quality,
+        }
     }
 
     /// Returns the reason why the denoiser cannot be loaded.
@@ -115,6 +132,23 @@ impl<'a> Finish<'a> {
         SeenPixels::new(self.world, view, &settings, self.control)
     }
 
+    /// Returns the layers that are kept: among `means`, or layers of first hits.
+    fn kept(&self, method: &Method, mut means: Vec<Layer>) -> Vec<Layer> {
+        let unwanted = [Feature::Albedo, Feature::Normal].into_iter().filter(|f| !self.features.contains(*f));
+        for feature in unwanted {
+            means.retain(|layer| layer.name != feature.name());
+        }
+        if self.averaging == Averaging::Mean || self.features.is_empty() {
+            return means;
+        }
+        let settings = FeatureSettings { estimand: method.estimand(), spp: 1, seed: method.seed() };
+        let seen = SeenPixels::first_hits(self.world, self.view, &settings, self.control);
+        let mut layers = seen.layers(self.world, self.features);
+        layers.retain(|layer| layer.name != ALPHA);
+        layers.extend(means.into_iter().filter(|layer| layer.name == ALPHA));
+        layers
+    }
+
     /// Returns the layers of all features that are wanted, at `spp` eye samples of the method.
     pub fn features(&self, view: &View, method: &Method, spp: u32) -> Vec<Layer> {
         self.look_at(view, method, spp).layers(self.world, self.wanted())
@@ -165,6 +199,16 @@ impl<'a> Finish<'a> {
             }
         }
         output.variance = output.variance.take().map(|variance| variance.sharpened_variance(a));
+        if self.world.scene.hides_background {
+            sharpen_cover(output, a);
+        }
+    }
+
+    /// True if pixels that see the environment alone have no noise: a lens blurs an environment that varies.
+    fn background_is_clean(&self) -> bool {
+        let scene = &self.world.scene;
+        let varies = matches!(scene.environment, Some(Environment::Map(_))) || !scene.discs.is_empty();
+        scene.hides_background || !varies || !matches!(self.view.camera.projection, Projection::Lens { .. })
     }
 
     /// Adds features to an image, and denoises it, given the surfaces seen.
@@ -172,7 +216,7 @@ impl<'a> Finish<'a> {
         self.apply_to_layers(method, seen.layers(self.world, self.wanted()), output)
     }
 
-    fn apply_to_layers(&self, method: &Method, mut layers: Vec<Layer>, mut output: Output) -> Output {
+    fn apply_to_layers(&self, method: &Method, layers: Vec<Layer>, mut output: Output) -> Output {
         output.complete &= !self.control.is_cancelled();
         if !output.complete {
             return output;
@@ -181,11 +225,8 @@ impl<'a> Finish<'a> {
             let quality = self.quality(method, &output);
             self.denoise(denoiser, quality, &layers, &mut output);
         }
-        let unwanted = [Feature::Albedo, Feature::Normal].into_iter().filter(|f| !self.features.contains(*f));
-        for feature in unwanted {
-            layers.retain(|layer| layer.name != feature.name());
-        }
-        output.extra.extend(layers);
+        let kept = self.kept(method, layers);
+        output.extra.extend(kept);
         output
     }
 
@@ -195,7 +236,9 @@ impl<'a> Finish<'a> {
         if self.is_last || self.view.window.pixel_count() > LARGE {
             give_back();
         }
-        let clean = || denoiser.denoise(&output.color, &guides(layers), quality);
+        let keeps_background = self.background_is_clean();
+        let guides = Guides { keeps_background, ..guides(layers) };
+        let clean = || denoiser.denoise(&output.color, &guides, quality);
         let clean = output.stats.time(Stage::Denoise, clean);
         output.denoised = Some(clean.map(|clean| {
             let noisy = std::mem::replace(&mut output.color, clean);
@@ -205,10 +248,22 @@ impl<'a> Finish<'a> {
     }
 }
 
+/// Sharpens the layer of alpha as the image is, and clears pixels that are not covered.
+fn sharpen_cover(output: &mut Output, a: f32) {
+    for layer in output.extra.iter_mut().filter(|layer| layer.name == ALPHA) {
+        if let Pixels::Scalar(alpha) = &mut layer.pixels {
+            *alpha = alpha.map(|alpha| Rgb::splat(*alpha)).sharpened(a).map(|alpha| alpha.x.clamp(0.0, 1.0));
+            let pixels = output.color.pixels.iter_mut().zip(&alpha.pixels);
+            pixels.filter(|(_, alpha)| **alpha == 0.0).for_each(|(pixel, _)| *pixel = Rgb::ZERO);
+        }
+    }
+}
+
 /// Returns albedo and normals among the layers of features.
 pub fn guides(layers: &[Layer]) -> Guides<'_> {
     let image = |feature: Feature| -> Option<&Image> {
         layers.iter().find(|layer| layer.name == feature.name()).and_then(Layer::triples)
     };
-    Guides { albedo: image(Feature::Albedo), normal: image(Feature::Normal), noise_free: true }
+    let (albedo, normal) = (image(Feature::Albedo), image(Feature::Normal));
+    Guides { albedo, normal, noise_free: true, ..Guides::default() }
 }

@@ -3,7 +3,7 @@
 use crate::denoise::NOISY_VARIANCE;
 use crate::method::{Method, Output};
 use base::film::metrics::{rel_mse_of_variance, standard_error};
-use base::film::{Film, Layer, Metadata};
+use base::film::{BACKGROUND, Film, Layer, Metadata, NO_BACKGROUND};
 use base::stats::Stats;
 use scene::Scene;
 use serde_json::Value;
@@ -60,6 +60,9 @@ pub(super) fn film(output: Output, view: &View, scene: &Scene) -> (Film, u64) {
     let (layer, of) =
         if matches!(output.denoised, Some(Ok(_))) { (NOISY_VARIANCE, "noisy_") } else { ("variance", "") };
     let mut metadata = Metadata::default();
+    if scene.hides_background {
+        metadata.set(BACKGROUND, NO_BACKGROUND);
+    }
     if let Some(variance) = &output.variance {
         metadata.set(&format!("{of}standard_error"), standard_error(variance));
         metadata.set(&format!("{of}relative_mse_of_noise"), rel_mse_of_variance(variance, &output.color));

@@ -4,7 +4,7 @@ use crate::denoise::Quality;
 use crate::method::{Method, ScaledSetting};
 use crate::verify::VerifySettings;
 use base::stats::Stopwatch;
-use transport::eye::Features;
+use transport::eye::{Averaging, Features};
 
 /// A method, the goal that its settings are planned for, and what happens to the image afterwards.
 #[derive(Clone, Debug, Default)]
@@ -17,6 +17,8 @@ pub struct Goal {
     pub plan: PlanGoal,
     /// Features of the visible surfaces that are wanted as layers.
     pub features: Features,
+    /// Samples that these layers describe.
+    pub averaging: Averaging,
     /// True if the image is to be denoised. By default, images of methods that leave noise are.
     pub denoise: Option<bool>,
     /// Quality of denoising. By default, it depends on the work on the image.

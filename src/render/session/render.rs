@@ -16,6 +16,7 @@ use crate::verify::verify;
 use base::film::Image;
 use base::progress::Control;
 use base::stats::{Stage, Stats, Stopwatch, available_bytes};
+use transport::eye::Averaging;
 use world::view::View;
 
 impl Session {
@@ -96,6 +97,9 @@ impl Session {
             plan,
         };
         report.store(&mut film.metadata);
+        if goal.averaging == Averaging::First {
+            film.metadata.set("aov_mode", "first");
+        }
 
         let measure = || measure(&context, goal, &method, &film.color, &mut stats);
         let measured = if complete { measured.or_else(measure) } else { None };

@@ -5,7 +5,9 @@
 
 use crate::method::{path, render};
 use crate::session::Session;
-use base::film::{Exposure, Image};
+use base::film::Image;
+use base::film::tone::auto_factor;
+use base::math::Rgb;
 use base::progress::Control;
 use scene::{Camera, Cameras};
 use world::view::View;
@@ -45,9 +47,11 @@ pub(super) fn spread(count: usize, most: usize) -> impl Iterator<Item = usize> {
 fn over(session: &Session, small: impl Iterator<Item = View>, control: &Control) -> f32 {
     let settings = path::Settings { spp: SPP, ..path::Settings::default() };
     let seen = small.flat_map(|view| render(&session.world, &view, &settings, control).color.pixels);
-    let pixels: Vec<_> = seen.collect();
+    // Black pixels show a hidden background, or little of a surface.
+    let hides = session.world.scene.hides_background;
+    let pixels: Vec<Rgb> = seen.filter(|pixel| !hides || *pixel != Rgb::ZERO).collect();
     let together = Image { width: pixels.len() as u32, height: 1, pixels };
-    Exposure::Auto.factor(&together).log2()
+    auto_factor(&together).log2()
 }
 
 /// Returns the size of a small film of the same shape.

@@ -12,7 +12,8 @@
 //! Units: contrasts are relative to the mean of the surroundings. Luminances are those of known light, which includes
 //! the edges of direct light.
 
-use base::film::{Exposure, Image, Window};
+use base::film::tone::auto_factor;
+use base::film::{Image, Window};
 use base::math::Rgb;
 
 /// Pixels along the edge of a square of the pilot.
@@ -80,7 +81,7 @@ impl AdaptiveRule {
     pub fn new(pilot: &[Luminances], share: f32) -> AdaptiveRule {
         let grey = |square: &Luminances| square.values.iter().map(|v| Rgb::splat(*v)).collect::<Vec<_>>();
         let pixels: Vec<Rgb> = pilot.iter().flat_map(grey).collect();
-        let dark = DARK / Exposure::Auto.factor(&Image { width: pixels.len() as u32, height: 1, pixels });
+        let dark = DARK / auto_factor(&Image { width: pixels.len() as u32, height: 1, pixels });
         let inner = |square: &Luminances| {
             let Window { offset: [left, top], width, height, .. } = square.window;
             let inside = |start: u32, length: u32| {

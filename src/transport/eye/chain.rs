@@ -43,6 +43,8 @@ pub enum EdgeEnd<'w> {
     Nothing {
         /// Share of radiance from there that reaches the eye.
         throughput: Rgb,
+        /// True if the eye ray itself arrives there, through gaps in surfaces at most.
+        on_eye_ray: bool,
     },
 }
 
@@ -79,6 +81,8 @@ struct ChainBranch {
     depth: u32,
     /// Number of edges, counting each edge through a sheet.
     edges: u32,
+    /// True if the chain has passed nothing but gaps in surfaces.
+    on_eye_ray: bool,
     /// Length of the chain up to the ray's origin.
     distance: f32,
     /// Start of the ray, if a sharp lobe sampled it.
@@ -91,7 +95,8 @@ impl ChainBranch {
     /// Returns the radiance of the environment that a ray sees which hits nothing, by MIS weight; `None` if there is
     /// none.
     fn radiance_of_environment(&self, world: &World) -> Option<Rgb> {
-        let is_hidden = self.edges == 1 && world.scene.hides_emitters;
+        let scene = &world.scene;
+        let is_hidden = self.edges == 1 && scene.hides_emitters || self.on_eye_ray && scene.hides_background;
         let environment = world.emitters.environment.as_ref().filter(|_| !is_hidden)?;
         let direction = self.ray.direction;
         Some(match self.start {
@@ -136,6 +141,7 @@ impl ChainBranch {
             eta_sq: self.eta_sq * lobe.eta * lobe.eta,
             depth: self.depth + u32::from(!lobe.straight),
             edges: self.edges + 1,
+            on_eye_ray: self.on_eye_ray && lobe.straight && at.bsdf.passes_gaps_alone(),
             distance: at.distance,
             start: self.start,
             interior: world.interior_after(self.interior, surface, direction, lobe.straight),
@@ -155,8 +161,9 @@ impl ChainBranches {
     /// Begins a chain with an eye ray.
     fn new(ray: Ray) -> ChainBranches {
         let (throughput, eta_sq, depth, edges, distance) = (Rgb::ONE, 1.0, 1, 1, 0.0);
-        let (start, interior) = (None, Interior::NONE);
-        let first = ChainBranch { ray, throughput, eta_sq, depth, edges, distance, start, interior };
+        let (on_eye_ray, start, interior) = (true, None, Interior::NONE);
+        let first =
+            ChainBranch { ray, throughput, eta_sq, depth, edges, on_eye_ray, distance, start, interior };
         ChainBranches { current: Some(first), pending: [const { None }; PENDING], waiting: 0 }
     }
 
@@ -212,7 +219,8 @@ impl<'w> ChainTracer<'w> {
             counts.rays += 1;
             let out = -branch.ray.direction;
             let Some(mut surface) = world.intersect(&branch.ray) else {
-                visit(EdgeEnd::Nothing { throughput: branch.throughput });
+                let ChainBranch { throughput, on_eye_ray, .. } = branch;
+                visit(EdgeEnd::Nothing { throughput, on_eye_ray });
                 if let Some(radiance) = branch.radiance_of_environment(world) {
                     emitted += branch.throughput * radiance;
                 }

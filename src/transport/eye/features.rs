@@ -9,7 +9,7 @@
 //! | depth | `depth.Z` | distance along the camera's axis, of the nearest sample; 10^10 without a surface |
 //! | material | `materialId` | 1 + index of the nearest sample's material; 0 without a surface |
 //! | object | `objectId` | 1 + index of the nearest sample's mesh; 0 without a surface |
-//! | alpha | `A` | share of samples that hit a surface |
+//! | alpha | `A` | share of the pixel that surfaces cover, without gaps in them |
 //!
 //! A sample's features are those of the surface that contributes most of its light. At mirrors and smooth glass these
 //! are the surfaces seen in or behind them, at the summed distance. If the environment contributes most, they are
@@ -20,7 +20,11 @@
 //! reflectance. This preserves the image on a sign and the hue of a plain lamp. Otherwise a denoiser would blur the
 //! former and take the edges of the latter for noise.
 //!
-//! Positions are averaged over the samples that hit a surface, albedo and normals over all samples.
+//! Positions are averaged over the samples that hit a surface, albedo and normals over all samples. So normals are
+//! shorter than 1 where samples differ.
+//!
+//! [`Averaging::First`] averages nothing. It describes the surface that the ray through the pixel's middle hits first,
+//! also if that is a mirror or glass. Alpha is a share nevertheless.
 
 use super::seen::{FeatureSampler, FeatureSettings, PixelFeatures};
 use base::film::{Image, Layer};
@@ -60,7 +64,7 @@ pub enum Feature {
     Material,
     /// Index of the mesh.
     Object,
-    /// Share of samples that hit a surface.
+    /// Share of the pixel that surfaces cover.
     Alpha,
 }
 
@@ -90,6 +94,16 @@ impl Feature {
             Feature::Alpha => "alpha",
         }
     }
+}
+
+/// Samples of a pixel that its features describe.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Averaging {
+    /// All samples.
+    #[default]
+    Mean,
+    /// The first hit of the ray through the pixel's middle.
+    First,
 }
 
 /// Set of features.
@@ -154,20 +168,45 @@ pub struct EvenSurface {
 impl SeenPixels {
     /// Samples the pixels of the view's window; pixels are empty once cancelled.
     pub fn new(world: &World, view: &View, settings: &FeatureSettings, control: &Control) -> SeenPixels {
+        SeenPixels::by_tiles(view, control, |first, last| {
+            FeatureSampler { world, view, settings }.pixels(first, last)
+        })
+    }
+
+    /// Finds the first hits of the rays through the middles of the pixels; pixels are empty once cancelled.
+    pub fn first_hits(
+        world: &World,
+        view: &View,
+        settings: &FeatureSettings,
+        control: &Control,
+    ) -> SeenPixels {
+        let sampler = FeatureSampler { world, view, settings };
+        SeenPixels::by_tiles(view, control, |first, last| {
+            let pixels = (first[1]..=last[1]).flat_map(|y| (first[0]..=last[0]).map(move |x| [x, y]));
+            pixels.map(|pixel| sampler.first_hit(pixel)).collect()
+        })
+    }
+
+    /// Looks through the pixels of a view's window; `look` returns those from a first to a last film pixel, by rows.
+    fn by_tiles(
+        view: &View,
+        control: &Control,
+        look: impl Fn([u32; 2], [u32; 2]) -> Vec<PixelFeatures> + Sync,
+    ) -> SeenPixels {
         let window = &view.window;
         let mut pixels: Vec<PixelFeatures> = vec![PixelFeatures::default(); window.pixel_count() as usize];
         let numbers: Vec<usize> = (0..window.tile_count(TILE)).collect();
         // Blocks of tiles bound the memory that pixels take twice.
         for numbers in numbers.chunks(TILES) {
-            let look = |index: &usize| {
+            let look_at = |index: &usize| {
                 if control.is_cancelled() {
                     return Vec::new();
                 }
                 let mut tile = window.tile(*index, TILE).map(|at| window.film_pixel(at));
                 let Some(first) = tile.next() else { return Vec::new() };
-                FeatureSampler { world, view, settings }.pixels(first, tile.last().unwrap_or(first))
+                look(first, tile.last().unwrap_or(first))
             };
-            let found: Vec<Vec<PixelFeatures>> = numbers.par_iter().one_by_one().map(look).collect();
+            let found: Vec<Vec<PixelFeatures>> = numbers.par_iter().one_by_one().map(look_at).collect();
             for (tile, found) in numbers.iter().zip(found) {
                 for (pixel, [x, y]) in found.into_iter().zip(window.tile(*tile, TILE)) {
                     pixels[(y * window.width + x) as usize] = pixel;
@@ -220,7 +259,7 @@ impl SeenPixels {
                 Layer::id("materialId", pixels.map(|p| p.nearest.map_or(0, |n| n.material + 1)))
             }
             Feature::Object => Layer::id("objectId", pixels.map(|p| p.nearest.map_or(0, |n| n.mesh + 1))),
-            Feature::Alpha => Layer::scalar("A", pixels.map(|p| p.surfaces as f32 / p.samples as f32)),
+            Feature::Alpha => Layer::scalar("A", pixels.map(|p| p.covered / p.samples as f32)),
         };
         Feature::ALL.into_iter().filter(|feature| wanted.contains(*feature)).map(layer).collect()
     }

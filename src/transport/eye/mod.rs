@@ -37,7 +37,7 @@ pub use counts::{DROPPED_BRANCHES, EyeCounts};
 pub use direct_light::merged_points;
 pub use direct_sampling::{DirectSampling, LightSources};
 pub use extra::ExtraSamples;
-pub use features::{EvenSurface, Feature, Features, SeenPixels, UnknownFeature};
+pub use features::{Averaging, EvenSurface, Feature, Features, SeenPixels, UnknownFeature};
 pub use guides::{FirstSurfaces, FullPaths, Guide, PackedGuide, PackedGuides};
 pub use pass::EyePass;
 pub use pilot::{ByPhotons, EyePilot};

@@ -8,9 +8,9 @@ use crate::paths::Estimand;
 use base::math::{Cone, LANES, Rgb, first_lanes};
 use base::sampling::Sampler;
 use embree::{Hits16, Ray, Rays16};
-use glam::{DVec3, Vec3};
+use glam::{DVec3, Vec2, Vec3};
 use world::view::View;
-use world::{Surface, World};
+use world::{Surface, World, beyond};
 
 /// Maximum number of samples per pixel. Features have little noise, but denoised images inherit it along edges.
 const MAX_SAMPLES: u32 = 32;
@@ -58,6 +58,8 @@ pub(super) struct PixelFeatures {
     pub position: DVec3,
     /// Number of samples that hit a surface.
     pub surfaces: u32,
+    /// Sum of the shares of samples that surfaces cover.
+    pub covered: f32,
     /// Features of the nearest sample.
     pub nearest: Option<Nearest>,
     /// Number of samples.
@@ -126,6 +128,30 @@ impl FeatureSampler<'_> {
         inside().map(|pixel| pixels[at(pixel)]).collect()
     }
 
+    /// Returns the features of the surface that the ray through the middle of a pixel hits first.
+    pub fn first_hit(&self, pixel: [u32; 2]) -> PixelFeatures {
+        let (world, cone) = (self.world, self.view.cone(1));
+        let mut ray = world.behind_hidden(self.view.primary_ray(pixel, Vec2::splat(0.5)));
+        let (mut seen, mut distance) = (SeenSurfaces::default(), 0.0);
+        let cos = ray.direction.dot(self.view.camera.forward);
+        for _ in 0..MAX_EDGES {
+            let Some(mut surface) = world.intersect(&ray) else { break };
+            distance += surface.t;
+            surface.footprint = ray.direction * cone.width_at(distance);
+            let (bsdf, out) = (world.bsdf(&surface), -ray.direction);
+            if bsdf.gaps() > 0.5 {
+                ray = beyond(&ray, surface.position, surface.normal, surface.t);
+                continue;
+            }
+            let vertex = ChainVertex { surface, bsdf, out, throughput: Rgb::ONE, depth: 1, distance };
+            seen.meet(world, EdgeEnd::Surface(vertex));
+            break;
+        }
+        let mut pixel = PixelFeatures::default();
+        pixel.add(world, &seen, cos);
+        pixel
+    }
+
     /// Adds samples, each given by the index of its pixel and its number there.
     pub fn add(
         &self,
@@ -173,7 +199,7 @@ impl FeatureSampler<'_> {
 impl PixelFeatures {
     /// Adds a sample whose first edge has the cosine `cos` with the camera's axis.
     fn add(&mut self, world: &World, seen: &SeenSurfaces, cos: f32) {
-        let vertex = seen.main.or(seen.first);
+        let vertex = seen.main.or(seen.first).filter(|_| seen.passed < 1.0);
         let towards =
             |vertex: &ChainVertex, normal: Vec3| if normal.dot(vertex.out) < 0.0 { -normal } else { normal };
         let normal = vertex.map_or(Vec3::ZERO, |vertex| towards(&vertex, vertex.surface.frame.normal));
@@ -187,6 +213,7 @@ impl PixelFeatures {
         self.geometric_normal += towards(&vertex, surface.normal);
         self.position += surface.position.as_dvec3();
         self.surfaces += 1;
+        self.covered += 1.0 - seen.passed;
         let depth = vertex.distance * cos;
         if self.nearest.is_none_or(|nearest| depth < nearest.depth) {
             let material = world.material(surface.mesh).0;
@@ -221,6 +248,8 @@ struct SeenSurfaces<'w> {
     main: Option<ChainVertex<'w>>,
     /// Share of the light from `main`.
     share: f32,
+    /// Share of the sample that passes gaps in surfaces and hits nothing.
+    passed: f32,
     /// True if the sample hits mirrors, glass or sharp lobes.
     reflects: bool,
 }
@@ -251,7 +280,10 @@ impl<'w> SeenSurfaces<'w> {
 
     fn meet(&mut self, world: &'w World, met: EdgeEnd<'w>) {
         match met {
-            EdgeEnd::Nothing { throughput } => {
+            EdgeEnd::Nothing { throughput, on_eye_ray } => {
+                if on_eye_ray {
+                    self.passed = (self.passed + throughput.max_element()).min(1.0);
+                }
                 if throughput.max_element() > self.share {
                     (self.share, self.main) = (throughput.max_element(), None);
                 }

@@ -158,9 +158,12 @@ impl Batch {
         hits: &mut Hits16,
     ) -> u16 {
         let found = world.accel.closest_hit16(&packet.rays, valid, depth == 1, hits);
-        if !(depth == 1 && world.scene.hides_emitters) {
-            self.escape(world, packet, valid & !found, policy);
-        }
+        let hidden = match &world.scene {
+            scene if scene.hides_background => packet.on_eye_ray(depth),
+            scene if scene.hides_emitters && depth == 1 => u16::MAX,
+            _ => 0,
+        };
+        self.escape(world, packet, valid & !found & !hidden, policy);
         found
     }
 

@@ -49,6 +49,8 @@ pub(super) struct Packet {
     pub stage: U32x16,
     /// Numbers of sheets that light has passed straight. The edges before and behind a sheet count as one.
     pub sheets: U32x16,
+    /// Numbers of gaps among the sheets.
+    pub gaps: U32x16,
     /// Cones around the edges.
     pub cones: [Cone; LANES],
     /// Interiors in which the edges start.
@@ -83,6 +85,7 @@ impl Packet {
             path_class: [0; LANES],
             stage: [PathStage::Chain as u32; LANES],
             sheets: [0; LANES],
+            gaps: [0; LANES],
             cones: [cone; LANES],
             interior: [Interior::NONE; LANES],
         }
@@ -105,6 +108,7 @@ impl Packet {
         self.path_class[to] = packet.path_class[from];
         self.stage[to] = packet.stage[from];
         self.sheets[to] = packet.sheets[from];
+        self.gaps[to] = packet.gaps[from];
         self.cones[to] = packet.cones[from];
         self.interior[to] = packet.interior[from];
     }
@@ -113,6 +117,12 @@ impl Packet {
     #[inline]
     pub fn may_go_on(&self, edges: u32, max_depth: u32) -> u16 {
         mask_of(&self.sheets.map(|sheets| u32::from(edges - sheets < max_depth)))
+    }
+
+    /// Returns the lanes whose edge `depth` continues the eye ray, through gaps at most.
+    #[inline]
+    pub fn on_eye_ray(&self, depth: u32) -> u16 {
+        mask_of(&self.gaps.map(|gaps| u32::from(gaps + 1 == depth)))
     }
 
     /// Returns the lanes at a stage.

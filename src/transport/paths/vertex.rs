@@ -222,6 +222,7 @@ impl Packet {
         if let Some(before) = before {
             for i in lanes_in(found & samples.straight()) {
                 self.pass_sheet(i, &before, surfaces, samples.weight.get(i) / survivals[i]);
+                self.gaps[i] += u32::from(bsdfs.lane(i).passes_gaps_alone());
             }
         }
         found

@@ -13,7 +13,8 @@ mod dct;
 
 use crate::eye::SeenPixels;
 use crate::reprojection::ViewProjection;
-use base::film::{Exposure, Image, display, srgb_slope};
+use base::film::tone::auto_factor;
+use base::film::{Image, display, srgb_slope};
 use base::math::{Rgb, luminance};
 use dct::{SIDE, visible_step};
 use glam::{Vec2, Vec3};
@@ -96,7 +97,7 @@ impl Thresholds {
 /// Returns the visible difference of luminance per pixel of an image.
 fn visible_differences(color: &Image, q_scale: f32) -> Vec<f32> {
     let [width, height] = [color.width, color.height].map(|side| side as usize);
-    let factor = Exposure::Auto.factor(color);
+    let factor = auto_factor(color);
     let grey_at = |x: usize, y: usize| {
         let pixel = color.pixels[y.min(height - 1) * width + x.min(width - 1)];
         WHITE * display(Rgb::splat(luminance(pixel)), factor).x

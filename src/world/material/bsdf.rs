@@ -97,6 +97,17 @@ impl<'m> Bsdf<'m> {
         self.any_lobe(LobeModel::passes_straight)
     }
 
+    /// Returns true if light passes straight through gaps in the surface at most.
+    pub fn passes_gaps_alone(&self) -> bool {
+        !self.any_lobe(|lobe| lobe.passes_straight() && !matches!(lobe, LobeModel::Gap))
+    }
+
+    /// Returns the share of the surface that is not there.
+    pub fn gaps(&self) -> f32 {
+        let gap = |slot: usize| matches!(self.model.lobes[slot], LobeModel::Gap);
+        (0..self.model.lobes.len()).filter(|slot| gap(*slot)).map(|slot| mean(self.scales[slot])).sum()
+    }
+
     /// Splits the material into the part without sharp lobes and the part of the sharp lobes; `None` if there are no
     /// sharp lobes.
     #[inline]
