@@ -26,6 +26,13 @@ const SHORT_PIXEL_BYTES: u64 = 12;
 /// Estimated bytes per pixel while a deeper image is decoded and stored.
 const LONG_PIXEL_BYTES: u64 = 36;
 
+/// Maximum length of a line in the head of a Radiance HDR file, in bytes.
+const MAX_HEAD: usize = 1 << 16;
+
+/// Messages of decoders at the end of a file that is cut off.
+const CUT_OFF: [&str; 4] =
+    ["failed to fill whole buffer", "unexpected end of file", "EOF in header", "unexpected EOF"];
+
 /// Remedy for an image that does not fit into memory.
 pub(super) const SMALLER: &str = "make it smaller, or give more memory";
 
@@ -63,7 +70,11 @@ enum Refusal {
 
 impl<E: std::fmt::Display> From<E> for Refusal {
     fn from(error: E) -> Refusal {
-        Refusal::Undecodable(error.to_string())
+        let what = error.to_string();
+        Refusal::Undecodable(match CUT_OFF.iter().any(|end| what.contains(end)) {
+            true => "the file ends too early; copy or export it again".to_owned(),
+            false => what,
+        })
     }
 }
 
@@ -121,9 +132,8 @@ fn check_size(width: usize, height: usize, pixel_bytes: u64, bytes: &[u8]) -> Re
 }
 
 fn decode_common(bytes: &[u8], channel: Channel, path: &Path) -> Result<DecodedImage, Refusal> {
-    // Mitsuba writes the other signature of Radiance HDR, which the decoder rejects.
-    let signed = bytes.strip_prefix(b"#?RGBE").map(|rest| [b"#?RADIANCE", rest].concat());
-    let bytes = signed.as_deref().unwrap_or(bytes);
+    let usual = usual_radiance(bytes);
+    let bytes = usual.as_deref().unwrap_or(bytes);
     let mut reader = image::ImageReader::new(Cursor::new(bytes)).with_guessed_format()?;
     if reader.format().is_none() {
         // TGA has no signature.
@@ -172,6 +182,26 @@ fn decode_common(bytes: &[u8], channel: Channel, path: &Path) -> Result<DecodedI
         }
     };
     Ok(DecodedImage { width, height, texels })
+}
+
+/// Returns a Radiance HDR file with the signature and the line ends that the decoder reads; `None` if it has them.
+///
+/// Mitsuba writes another signature. Some programs end the lines of the head with a carriage return, too.
+fn usual_radiance(bytes: &[u8]) -> Option<Vec<u8>> {
+    bytes.strip_prefix(b"#?")?;
+    // The line behind the first empty one is the last.
+    let (mut rest, mut usual, mut ends) = (bytes, Vec::new(), false);
+    while let Some(at) = rest.iter().take(MAX_HEAD).position(|byte| *byte == b'\n') {
+        let line = rest[..at].strip_suffix(b"\r").unwrap_or(&rest[..at]);
+        usual.extend_from_slice(if line == b"#?RGBE" { b"#?RADIANCE" } else { line });
+        usual.push(b'\n');
+        rest = &rest[at + 1..];
+        if ends {
+            break;
+        }
+        ends = line.is_empty();
+    }
+    (usual.len() + rest.len() != bytes.len()).then(|| [&usual[..], rest].concat())
 }
 
 fn linear(encoded: f32, raw: bool) -> f32 {
@@ -279,6 +309,12 @@ mod tests {
         let other = [b"#?RGBE", &small[b"#?RADIANCE".len()..]].concat();
         let decoded = |bytes: &[u8]| decode_file(bytes, false, "sky.hdr").unwrap();
         assert_eq!(decoded(&other), decoded(&small));
+        // Line ends of the head may have a carriage return.
+        let head = b"#?RADIANCE\r\nFORMAT=32-bit_rle_rgbe\r\n\r\n-Y 2 +X 8\r\n";
+        let pixels = &small[head.len() - 4..];
+        assert_eq!(decoded(&[&head[..], pixels].concat()), decoded(&small));
+        let cut = decode_file(&small[..small.len() - 3], false, "sky.hdr").unwrap_err().to_string();
+        assert!(cut.contains("ends too early"), "{cut}");
         // A claim that no file of this size can keep.
         let claims = String::from_utf8_lossy(&radiance(8, 1)).replace("-Y 1 +X 8", "-Y 16384 +X 16384");
         let message = decode_file(claims.as_bytes(), false, "sky.hdr").unwrap_err().to_string();

@@ -30,6 +30,7 @@ mod lacking_uvs;
 mod layers;
 mod lighting;
 mod local;
+mod mend;
 mod mesh;
 #[cfg(test)]
 mod mirrored_tests;
@@ -49,6 +50,8 @@ mod sky;
 mod stand_in;
 mod statements;
 mod surfaces;
+#[cfg(test)]
+mod texel_tests;
 mod viewpoint;
 mod views;
 

@@ -5,7 +5,7 @@ use super::error::Location;
 use super::statements::{Fate, Statement, assert_page_lists};
 use base::math::Rgb;
 use exr::meta::attribute::{Chromaticities, IntegerBounds};
-use exr::prelude::{AnyChannel, AnyChannels, FlatSamples, Image, Vec2, WritableImage};
+use exr::prelude::{AnyChannel, AnyChannels, FlatSamples, Image, Layer, Vec2, WritableImage};
 use image::{DynamicImage, ImageFormat};
 use std::io::Cursor;
 use std::path::Path;
@@ -25,7 +25,7 @@ const PICTURES: &[Statement] = &[
     new("WebP", Fate::Read, "sRGB unless raw; alpha is dropped"),
     new("BMP", Fate::Read, "sRGB unless raw"),
     new("TGA", Fate::Read, "sRGB unless raw; by its extension, since it has no signature"),
-    new("Radiance HDR", Fate::Read, "linear; with either signature"),
+    new("Radiance HDR", Fate::Read, "linear; with either signature, and with CR LF in the head"),
     new("OpenEXR", Fate::Read, "linear; see the next table"),
     new("GIF", Fate::Refused, "convert it to PNG"),
     new("TIFF", Fate::Refused, "convert it to PNG or OpenEXR"),
@@ -40,6 +40,7 @@ const EXR: &[Statement] = &[
     new("Y", Fate::Read, "else the luminance without a layer, as grey; `L` as well"),
     new("NAME.R", Fate::Read, "else the colour of the only layer that has one"),
     new("RY", Fate::Read, "with `Y` and `BY`: luminance and chroma, interpolated linearly where subsampled"),
+    new("view", Fate::Read, "the default view of stereo files: the first view of `multiView` or of a part"),
     new("A", Fate::NoEffect, "alpha is dropped"),
     new("NAME.X", Fate::NoEffect, "further channels, layers and parts"),
     new("several layers", Fate::Refused, "no layer is clearly the image; the message lists all channels"),
@@ -158,10 +159,18 @@ fn each_kind_of_picture_has_its_colour() {
 
 /// Returns a file of 3 x 2 pixels with constant channels, whose attributes are changed.
 fn exr(channels: &[(&str, f32)], change: impl FnOnce(&mut exr::meta::header::ImageAttributes)) -> Vec<u8> {
+    exr_of(channels, |image| change(&mut image.attributes))
+}
+
+/// Returns a file of 3 x 2 pixels with constant channels, which is changed.
+fn exr_of(
+    channels: &[(&str, f32)],
+    change: impl FnOnce(&mut Image<Layer<AnyChannels<FlatSamples>>>),
+) -> Vec<u8> {
     let channel = |(name, value): &(&str, f32)| AnyChannel::new(*name, FlatSamples::F32(vec![*value; 6]));
     let list = channels.iter().map(channel).collect();
     let mut image = Image::from_channels((3, 2), AnyChannels::sort(list));
-    change(&mut image.attributes);
+    change(&mut image);
     let mut bytes = Cursor::new(Vec::new());
     image.write().to_buffered(&mut bytes).unwrap();
     bytes.into_inner()
@@ -194,6 +203,12 @@ fn each_channel_of_an_exr_has_its_meaning() {
     assert_eq!(colour(&[&layer("shot", own)[..], &other].concat()), None);
     let chroma = colour(&[("Y", 0.34934), ("RY", 0.6 / 0.34934 - 1.0), ("BY", 0.1 / 0.34934 - 1.0)]).unwrap();
     assert!((chroma - Rgb::new(0.6, 0.3, 0.1)).abs().max_element() < 1e-4, "{chroma}");
+    // The first view is the default.
+    let views = ["left", "right"].map(exr::prelude::Text::from).to_vec();
+    let stereo = exr_of(&[layer("left", own), layer("right", [7.0; 3])].concat(), |image| {
+        image.layer_data.attributes.multi_view_names = Some(views);
+    });
+    assert_eq!(read(&stereo, "a.exr").unwrap().texels.get(0, 0), right.unwrap());
     // The display window is the image.
     let wider = exr(&layer("", own), |attributes| {
         attributes.display_window = IntegerBounds { position: Vec2(-1, 0), size: Vec2(4, 2) };

@@ -10,6 +10,7 @@ use crate::error::{Location, Log, SceneError, Warning};
 use crate::file::{fnv1a, read_file};
 use crate::instances::{self, ReadPlan};
 use crate::lacking_uvs;
+use crate::mend::decode_mended;
 use crate::mesh::{self, RawMesh};
 use crate::plan::{
     Contents, EnvironmentPlan, ImageSource, MeshPlan, MeshSource, ScenePlan, TexturePlan, TextureSource,
@@ -41,8 +42,8 @@ enum Realised {
     /// A texture that cannot be read.
     MissingTexture(usize, Warning),
     Environment(DecodedImage),
-    /// A warning about the file's colours.
-    Profile(Warning),
+    /// A warning about the file's colours or texels.
+    Remark(Warning),
 }
 
 /// Hash of a file's bytes, if it was read, and its content.
@@ -56,7 +57,7 @@ struct ReadFiles {
     hashes: Vec<u64>,
     /// Meshes of each mesh plan.
     meshes: Vec<ReadPlan>,
-    /// Warnings about each mesh plan, and then about the colours of each image.
+    /// Warnings about each mesh plan, and then about each image.
     remarks: Vec<Vec<Warning>>,
     /// Image of each texture plan.
     images: Vec<Option<DecodedImage>>,
@@ -75,7 +76,7 @@ impl ScenePlan {
         let mut contents = self.contents;
         contents.place_meshes(&mut meshes, log)?;
         remarks.into_iter().flatten().try_for_each(|remark| log.add(remark))?;
-        contents.decode_embedded(&mut images, &mut missing)?;
+        contents.decode_embedded(&mut images, &mut missing, log)?;
         stand_in::replace(missing, &mut images, &mut contents.materials, log)?;
         lacking_uvs::report(&contents, &meshes, &images, log)?;
         let (meshes, groups) = instances::assemble(&contents, meshes, most_copied)?;
@@ -146,7 +147,7 @@ impl ReadFiles {
             Realised::Texture(i, image) => self.images[i] = Some(image),
             Realised::MissingTexture(i, warning) => _ = self.missing.insert(i, warning),
             Realised::Environment(image) => self.environment = Some(image),
-            Realised::Profile(warning) => self.remarks.push(vec![warning]),
+            Realised::Remark(warning) => self.remarks.push(vec![warning]),
         }
     }
 }
@@ -246,20 +247,26 @@ impl Contents {
         &self,
         images: &mut [Option<DecodedImage>],
         missing: &mut MissingImages,
+        log: &mut Log,
     ) -> Result<(), SceneError> {
         let decode = |(i, (plan, image)): (usize, (&TexturePlan, &mut Option<DecodedImage>))| {
             let TextureSource::Part { source: ImageSource::Bytes(bytes), channel, name } = &plan.image else {
-                return Ok(None);
+                return Ok((None, None));
             };
-            match decode::decode(bytes, *channel, Path::new(name), &plan.place) {
-                Ok(decoded) => *image = Some(decoded),
-                Err(error) => return stand_in::warning(error, &plan.place).map(|warning| Some((i, warning))),
+            match decode_mended(bytes, *channel, Path::new(name), &plan.place, false) {
+                Ok((decoded, remark)) => {
+                    *image = Some(decoded);
+                    Ok((None, remark))
+                }
+                Err(error) => stand_in::warning(error, &plan.place).map(|warning| (Some((i, warning)), None)),
             }
-            Ok(None)
         };
         let undecoded: Result<Vec<_>, SceneError> =
             self.textures.par_iter().zip(images).enumerate().map(decode).collect();
-        missing.extend(undecoded?.into_iter().flatten());
+        for (undecoded, remark) in undecoded? {
+            missing.extend(undecoded);
+            remark.into_iter().try_for_each(|remark| log.add(remark))?;
+        }
         Ok(())
     }
 }
@@ -291,20 +298,28 @@ fn use_file(path: &Path, tasks: &[Task], budget: &TriangleBudget) -> Result<Used
         Err(error) => return Err(error),
     };
     let hash = Some(fnv1a(&bytes));
-    let done: Vec<Result<Realised, SceneError>> =
+    let done: Vec<Result<(Realised, Option<Warning>), SceneError>> =
         tasks.par_iter().map(|task| perform(task, &bytes, path, budget)).collect();
-    let mut done: Vec<Realised> = done.into_iter().collect::<Result<_, _>>()?;
+    let done = done.into_iter().collect::<Result<Vec<_>, _>>()?;
+    let (mut done, remarks): (Vec<Realised>, Vec<Option<Warning>>) = done.into_iter().unzip();
+    done.extend(remarks.into_iter().flatten().map(Realised::Remark));
     let place_of_colours = tasks.iter().find_map(|task| match task {
         Task::Texture(_, plan, Channel::Colour) => Some(&plan.place),
         Task::Environment(place) => Some(*place),
         Task::Mesh(..) | Task::Texture(..) => None,
     });
     let profile = place_of_colours.and_then(|place| colour_profile::warning(&bytes, path, place));
-    done.extend(profile.map(Realised::Profile));
+    done.extend(profile.map(Realised::Remark));
     Ok((hash, done))
 }
 
-fn perform(task: &Task, bytes: &[u8], path: &Path, budget: &TriangleBudget) -> Result<Realised, SceneError> {
+/// Performs a task; returns what it gives, and a warning about its texels.
+fn perform(
+    task: &Task,
+    bytes: &[u8],
+    path: &Path,
+    budget: &TriangleBudget,
+) -> Result<(Realised, Option<Warning>), SceneError> {
     Ok(match task {
         Task::Mesh(i, plan, is_member) => {
             let mut remarks = Vec::new();
@@ -320,20 +335,20 @@ fn perform(task: &Task, bytes: &[u8], path: &Path, budget: &TriangleBudget) -> R
             };
             budget.take(raw.triangles.len(), &plan.place)?;
             let read = ReadPlan::new(plan, raw, *is_member, &mut remarks);
-            Realised::Meshes(*i, read, remarks)
+            (Realised::Meshes(*i, read, remarks), None)
         }
-        Task::Texture(i, plan, channel) => match decode::decode(bytes, *channel, path, &plan.place) {
-            Ok(image) => Realised::Texture(*i, image),
-            Err(error) => Realised::MissingTexture(*i, stand_in::warning(error, &plan.place)?),
+        Task::Texture(i, plan, channel) => match decode_mended(bytes, *channel, path, &plan.place, false) {
+            Ok((image, remark)) => (Realised::Texture(*i, image), remark),
+            Err(error) => (Realised::MissingTexture(*i, stand_in::warning(error, &plan.place)?), None),
         },
         Task::Environment(place) => {
-            let image = decode::decode(bytes, Channel::Colour, path, place)?;
+            let (image, remark) = decode_mended(bytes, Channel::Colour, path, place, true)?;
             let DecodedImage { width, height, .. } = image;
             if let Some(lack) = lacking((width * height) as u64 * (ENVIRONMENT_TEXEL_BYTES + COPY_BYTES)) {
                 let what = format!("{}: light of its {width} x {height} texels takes {lack}", path.display());
                 return Err(place.wrong(what, decode::SMALLER));
             }
-            Realised::Environment(image)
+            (Realised::Environment(image), remark)
         }
     })
 }
@@ -356,7 +371,7 @@ fn texture(plan: TexturePlan, decoded: Option<DecodedImage>) -> Option<Texture> 
 /// As in Mitsuba, the last row is repeated until there are 3 rows.
 fn environment_map(image: DecodedImage, scale: f32, to_world: &DMat4) -> Option<EnvironmentMap> {
     let DecodedImage { width, height, texels } = image;
-    if !(scale >= 0.0 && texels.all(|texel| !texel.is_finite() || (texel * scale).is_finite())) {
+    if !(scale >= 0.0 && texels.all(|texel| (texel * scale).is_finite())) {
         return None;
     }
     let mut radiance: Vec<Rgb> = texels.iter().map(|texel| texel * scale).collect();

@@ -4,6 +4,9 @@
 //! the layer `diffuse`. In files of several parts the name of a part precedes the names of its layers. Letter case
 //! does not matter.
 //!
+//! In stereo files the last layer may be a view. The default view is the first that the file names. Its name is no
+//! layer, and the channels of other views are left out (*Storing Multi-View Images in OpenEXR Files*, 2007).
+//!
 //! The first of these is the picture:
 //! 1. the colour without a layer;
 //! 2. the colour of a layer called as one of [`PICTURE_LAYERS`], in this order;
@@ -28,6 +31,8 @@ pub struct PartNames {
     pub channels: Vec<String>,
     /// True if its pixels are deep data.
     pub is_deep: bool,
+    /// Names of its views, the default view first; empty if it does not tell.
+    pub views: Vec<String>,
 }
 
 /// Meaning of the channels of a picture.
@@ -91,8 +96,13 @@ struct LayerChannels<'a> {
 /// If the rule of this module chooses no channels, or several.
 pub fn picture_channels(parts: &[PartNames]) -> Result<PictureChannels, NoPicture> {
     let several = parts.len() > 1;
-    let flat = parts.iter().enumerate().filter(|(_, part)| !part.is_deep);
-    let groups: Vec<LayerChannels> = flat.flat_map(|(index, part)| groups(index, part, several)).collect();
+    let view = parts.iter().find_map(|part| part.views.first());
+    let is_seen =
+        |part: &PartNames| part.views.is_empty() || view.is_some_and(|view| part.views.contains(view));
+    let usable = parts.iter().enumerate().filter(|(_, part)| !part.is_deep && is_seen(part));
+    let view = view.map_or("", String::as_str);
+    let groups: Vec<LayerChannels> =
+        usable.flat_map(|(index, part)| groups(index, part, view, several)).collect();
     let (luma, colours): (Vec<&LayerChannels>, Vec<&LayerChannels>) =
         groups.iter().partition(|group| group.place.model == ColourModel::Luma);
     let called = |of: &[&LayerChannels], name: &str| -> Vec<PictureChannels> {
@@ -130,18 +140,29 @@ fn without_part<'a>(channel: &'a str, part: &str) -> &'a str {
     rest.filter(|_| !part.is_empty()).unwrap_or(channel)
 }
 
-/// Returns the layers of a part that have a colour or a luminance, in the order of their first channels.
-fn groups(index: usize, part: &PartNames, several: bool) -> Vec<LayerChannels<'_>> {
+/// Returns a layer without the default view `view` at its end; `None` for a layer of another view.
+fn in_view<'a>(layer: &'a str, views: &[String], view: &str) -> Option<&'a str> {
+    let (before, last) = layer.rsplit_once('.').unwrap_or(("", layer));
+    match views.iter().any(|name| name == last) {
+        true => (last == view).then_some(before),
+        false => Some(layer),
+    }
+}
+
+/// Returns the layers of a part that have a colour or a luminance in the default view `view`, in the order of their
+/// first channels.
+fn groups<'a>(index: usize, part: &'a PartNames, view: &str, several: bool) -> Vec<LayerChannels<'a>> {
     let mut layers: Vec<(&str, Vec<(usize, &str)>)> = Vec::new();
     for (i, channel) in part.channels.iter().enumerate() {
         let name = without_part(channel, &part.name);
         let (layer, component) = name.rsplit_once('.').unwrap_or(("", name));
+        let Some(layer) = in_view(layer, &part.views, view) else { continue };
         match layers.iter_mut().find(|(known, _)| *known == layer) {
             Some((_, components)) => components.push((i, component)),
             None => layers.push((layer, vec![(i, component)])),
         }
     }
-    let of_part = if several { part.name.as_str() } else { "" };
+    let of_part = if several { in_view(&part.name, &part.views, view).unwrap_or_default() } else { "" };
     let mut found = Vec::new();
     for (layer, components) in layers {
         let Some((channels, model)) = colour(&components) else { continue };
@@ -177,7 +198,7 @@ mod tests {
 
     fn part(name: &str, channels: &[&str]) -> PartNames {
         let channels = channels.iter().map(|&channel| channel.to_owned()).collect();
-        PartNames { name: name.to_owned(), channels, is_deep: false }
+        PartNames { name: name.to_owned(), channels, is_deep: false, views: Vec::new() }
     }
 
     /// Returns part and channels of the picture.
@@ -245,6 +266,32 @@ mod tests {
         let many: Vec<&str> = many.iter().map(String::as_str).collect();
         let error = picture_channels(&[part("", &many)]).unwrap_err().to_string();
         assert!(error.contains("c39 and 60 more") && !error.contains("deep"), "{error}");
+    }
+
+    #[test]
+    fn the_default_view_of_a_stereo_file_is_the_picture() {
+        let of_view = |part: PartNames, views: &[&str]| PartNames {
+            views: views.iter().map(|&view| view.to_owned()).collect(),
+            ..part
+        };
+        let rgb = ["B", "G", "R"];
+        let (left, right) = (part("rgba.left", &rgb), part("rgba.right", &rgb));
+        let parts = [of_view(left, &["left"]), of_view(right, &["right"])];
+        assert_eq!(chosen(&parts), Some((0, [2, 1, 0])));
+        // Parts of depth, without colours, and parts without names of their own.
+        let depths = ["left", "right"].map(|view| of_view(part(&format!("depth.{view}"), &["Z"]), &[view]));
+        let [depth_left, depth_right] = depths;
+        let [left, right] = parts;
+        assert_eq!(chosen(&[depth_left, left, depth_right, right]), Some((1, [2, 1, 0])));
+        let parts = ["right", "left"].map(|view| of_view(part(view, &rgb), &[view]));
+        assert_eq!(chosen(&parts), Some((0, [2, 1, 0])));
+        // One part: the default view has no name, or one of its own.
+        let both = ["left.B", "left.G", "left.R", "right.B", "right.G", "right.R"];
+        assert_eq!(chosen(&[of_view(part("", &both), &["right", "left"])]), Some((0, [5, 4, 3])));
+        let layers =
+            ["a.right.B", "a.right.G", "a.right.R", "beauty.left.B", "beauty.left.G", "beauty.left.R"];
+        assert_eq!(chosen(&[of_view(part("", &layers), &["left", "right"])]), Some((0, [5, 4, 3])));
+        assert_eq!(chosen(&[part("", &both)]), None);
     }
 
     #[test]

@@ -22,4 +22,4 @@ pub use chroma::from_luma_chroma;
 pub use error::ExrError;
 pub use picture::{ExrPicture, read_picture};
 pub use primaries::{Primaries, REC_709};
-pub use source::ExrSource;
+pub use source::{ExrSource, views};

@@ -8,7 +8,7 @@ use ::exr::block::chunk::Chunk;
 use ::exr::io::PeekRead;
 use ::exr::meta::MetaData;
 use ::exr::meta::attribute::{ChannelDescription, IntegerBounds, SampleType};
-use ::exr::meta::header::Header;
+use ::exr::meta::header::{Header, LayerAttributes};
 use ::exr::prelude::{FlatSamples, Text, Vec2, f16};
 use rayon::prelude::*;
 use std::io::{Read, Seek, SeekFrom};
@@ -51,6 +51,7 @@ impl<R: Read + Seek> ExrSource<R> {
             name: header.own_attributes.layer_name.as_ref().map(text).unwrap_or_default(),
             channels: header.channels.list.iter().map(|channel| text(&channel.name)).collect(),
             is_deep: header.deep,
+            views: views(&header.own_attributes),
         };
         self.headers().iter().map(names).collect()
     }
@@ -113,6 +114,12 @@ impl<R: Read + Seek> ExrSource<R> {
 /// Returns a name of the file as text.
 pub(super) fn text(text: &Text) -> String {
     String::from_utf8_lossy(text.as_slice()).into_owned()
+}
+
+/// Returns the names of the views of a part, the default view first.
+pub fn views(attributes: &LayerAttributes) -> Vec<String> {
+    let listed = attributes.multi_view_names.iter().flatten();
+    attributes.view_name.iter().chain(listed).map(text).collect()
 }
 
 /// Checks the headers. The library does so too, but rejects deep parts and subsampled channels.

@@ -4,7 +4,7 @@ use super::exr_write::PREFIX;
 use super::{ALPHA, BACKGROUND, CameraMatrices, Fact, Image, ImageError, Metadata, NO_BACKGROUND};
 use crate::exr_file::{
     ColourModel, ExrError, ExrSource, NoPicture, PartNames, PictureChannels, Primaries, from_luma_chroma,
-    picture_channels,
+    picture_channels, views,
 };
 use crate::file_kind::file_kind;
 use crate::film::Window;
@@ -94,6 +94,7 @@ impl ExrFile {
             name: part_name(part),
             channels: part.channel_data.list.iter().map(|channel| text(&channel.name)).collect(),
             is_deep: false,
+            views: views(&part.attributes),
         };
         let parts: Vec<PartNames> = self.parts.layer_data.iter().map(names).collect();
         picture_channels(&parts).map_err(|none| ImageError::NoPicture {

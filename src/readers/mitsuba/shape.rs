@@ -128,6 +128,10 @@ impl Converter<'_> {
             Some(emitter) => self.area_emitter(&emitter)?,
             None => None,
         };
+        for sensor in self.tagged(shape, "sensor")? {
+            let what = format!("the sensor \"{}\" of a shape is not supported", sensor.plugin);
+            self.log.warn(&sensor.place, what, "it is left out")?;
+        }
         let bsdf = self.only(shape, "bsdf")?;
         let material = self.material_of_shape(bsdf.as_ref(), emission.is_some())?;
         let of_emission = emission.and_then(|emission| emission.texture);

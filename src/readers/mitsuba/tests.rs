@@ -139,6 +139,22 @@ fn lights_without_surface() {
 }
 
 #[test]
+fn lights_of_one_number_are_grey_in_version_06() {
+    let lights = "<emitter type=\"constant\"><spectrum name=\"radiance\" value=\"2\"/></emitter>\
+        <emitter type=\"point\"><spectrum name=\"intensity\" value=\"3\"/></emitter>\
+        <shape type=\"rectangle\"><emitter type=\"area\"><spectrum name=\"radiance\" value=\"4\"/></emitter></shape>";
+    let text = format!("<scene version=\"0.6.0\"><sensor type=\"perspective\"/>{lights}</scene>");
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("s.xml");
+    std::fs::write(&path, text).unwrap();
+    let scene = crate::load(&path, &crate::LoadOptions::default()).unwrap().scene;
+    let Some(Environment::Constant(radiance)) = scene.environment else { panic!() };
+    let DeltaLight::Point { intensity, .. } = scene.lights[0] else { panic!() };
+    let area = scene.meshes[0].emission.unwrap().radiance;
+    assert_eq!([radiance, intensity, area], [2.0, 3.0, 4.0].map(Rgb::splat));
+}
+
+#[test]
 fn mirrored_and_flipped_shapes_face_along_their_normals() {
     let mirrored = "<transform name=\"to_world\"><scale x=\"-1\"/></transform>";
     let flipped = "<boolean name=\"flip_normals\" value=\"true\"/>";

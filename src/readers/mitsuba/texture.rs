@@ -14,7 +14,7 @@ use base::math::Rgb;
 use glam::{DMat3, DMat4, DVec2, DVec3};
 use scene::{Filter, Reflectance, Texels, Wrap};
 
-/// RGB value of an emissive spectrum of 1 at every wavelength, in Mitsuba's `rgb` variants.
+/// RGB value of an emissive spectrum of 1 at every wavelength, in the `rgb` variants of Mitsuba 3.
 const EQUAL_ENERGY: DVec3 = DVec3::new(1.204795, 0.94829, 0.908915);
 
 impl Converter<'_> {
@@ -38,7 +38,8 @@ impl Converter<'_> {
 
     fn spectrum(&mut self, object: &Object, name: &str, emissive: bool) -> Result<Option<Rgb>, SceneError> {
         let Some(property) = object.property(name) else { return Ok(None) };
-        let white = if emissive { EQUAL_ENERGY } else { DVec3::ONE };
+        // Version 0.6 reads one number as a grey.
+        let white = if emissive && !self.document.is_old { EQUAL_ENERGY } else { DVec3::ONE };
         let colour = match &property.value {
             PropertyValue::Rgb(colour) => *colour,
             PropertyValue::Float(v) => DVec3::splat(*v),

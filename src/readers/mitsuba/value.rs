@@ -251,10 +251,11 @@ fn matrix(text: &str, place: &Location) -> Result<DMat4, SceneError> {
     }
 }
 
-/// Returns a frame at `origin` with z towards `target` and x = up × z; `None` without a direction.
+/// Returns a frame at `origin` with z towards `target` and x = up × z; `None` without a direction. Without an up
+/// vector, up is the first tangent of Duff et al., *Building an Orthonormal Basis, Revisited*, 2017, as in Mitsuba 3.
 fn look_at(origin: DVec3, target: DVec3, up: DVec3) -> Option<DMat4> {
     let forward = unit(target - origin)?;
-    let up = if up == DVec3::ZERO { forward.any_orthonormal_vector() } else { up };
+    let up = if up == DVec3::ZERO { forward.any_orthonormal_pair().0 } else { up };
     let left = -right_of(forward, up)?;
     let new_up = forward.cross(left);
     Some(DMat4::from_cols(left.extend(0.0), new_up.extend(0.0), forward.extend(0.0), origin.extend(1.0)))
@@ -333,6 +334,12 @@ mod tests {
         let at = op("lookat", &[("origin", "1 2 3"), ("target", "1 2 9"), ("up", "0 1 0")]);
         let PropertyValue::Transform(m) = transform(&[at]).unwrap() else { panic!() };
         assert_eq!(m, DMat4::from_translation(DVec3::new(1.0, 2.0, 3.0)));
+        // Mitsuba 3.9 gives these frames without an up vector.
+        for (origin, axis) in [("0 0 5", DVec3::Y), ("0 5 0", DVec3::NEG_Z), ("0 0 -5", DVec3::NEG_Y)] {
+            let at = op("lookat", &[("origin", origin), ("target", "0 0 0")]);
+            let PropertyValue::Transform(m) = transform(&[at]).unwrap() else { panic!() };
+            assert!(m.transform_vector3(DVec3::X).distance(axis) < 1e-12, "{origin}");
+        }
         let PropertyValue::Transform(m) = transform(&[op("rotate", &[("angle", "0")])]).unwrap() else {
             panic!()
         };

@@ -2,9 +2,10 @@
 
 use super::classic::{LibraryReader, SLACK, is_principled};
 use super::mtl::{existing_file, possible_files};
-use crate::decode::{Channel, DecodedImage, decode};
-use crate::error::{Location, SceneError};
+use crate::decode::{Channel, DecodedImage};
+use crate::error::{Location, SceneError, Warning};
 use crate::file::{fnv1a, folder_of, read_file};
+use crate::mend::decode_mended;
 use crate::mesh::map_options::{MapChannel, MapOptions, parse};
 use crate::mesh::mtl::ClassicMaterial;
 use crate::plan::{ImageSource, TexturePlan, TextureSource};
@@ -43,11 +44,9 @@ impl LibraryReader<'_, '_> {
             self.lacks(source, keyword, what, "all channels count");
         }
         let texture = self.texture(source, keyword, map, Channel::Colour)?;
-        let is_light = keyword == "map_Ke";
         let scale = match factor {
             Rgb::ZERO => Rgb::ONE,
-            factor if is_light => factor,
-            factor => factor.min(Rgb::ONE),
+            factor => factor,
         };
         Ok(Reflectance::Textured { texture, scale })
     }
@@ -118,7 +117,7 @@ impl LibraryReader<'_, '_> {
         }
         let Some(map) = bump else { return Ok(None) };
         let factor = map.options.bump;
-        let holds_normals = decoded(&map, Channel::Data).is_some_and(|(image, _)| holds_normals(&image));
+        let holds_normals = decoded(&map, Channel::Data).is_some_and(|map| holds_normals(&map.image));
         let channel = match holds_normals {
             true => Channel::Data,
             false => self.channel(source, "bump", map.options.channel, Channel::Data),
@@ -184,13 +183,19 @@ impl LibraryReader<'_, '_> {
 
     fn texture(
         &mut self,
-        source: &ClassicMaterial,
+        source: &mut ClassicMaterial,
         keyword: &'static str,
         map: OpenMap,
         channel: Channel,
     ) -> Result<TextureId, SceneError> {
-        let image = match levelled(&map, channel, &mut self.builder.sources) {
-            Some(image) => TextureSource::Ready(format!("{keyword} of {}", source.name), image),
+        let levelled = levelled(&map, channel, &mut self.builder.sources);
+        if let Some(Warning { what, fallback, .. }) = levelled.as_ref().and_then(|map| map.remark.clone()) {
+            self.lacks(source, keyword, what, &fallback);
+        }
+        let image = match levelled {
+            Some(DecodedMap { image, .. }) => {
+                TextureSource::Ready(format!("{keyword} of {}", source.name), image)
+            }
             None => match channel {
                 Channel::Colour => TextureSource::File { path: map.file, raw: false },
                 Channel::Data => TextureSource::File { path: map.file, raw: true },
@@ -214,27 +219,36 @@ fn name_of(file: &Path) -> String {
     file.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default()
 }
 
-/// Returns the decoded image of a map and the hash of its file; `None` if it cannot be read.
-fn decoded(map: &OpenMap, channel: Channel) -> Option<(DecodedImage, u64)> {
+/// Image of a map, the hash of its file, and a warning about its texels.
+struct DecodedMap {
+    image: DecodedImage,
+    hash: u64,
+    remark: Option<Warning>,
+}
+
+/// Returns the decoded image of a map; `None` if it cannot be read.
+fn decoded(map: &OpenMap, channel: Channel) -> Option<DecodedMap> {
     let bytes = read_file(&map.file, &map.place).ok()?;
-    let image = decode(&bytes, channel, &map.file, &map.place).ok()?;
-    Some((image, fnv1a(&bytes)))
+    let (image, remark) = decode_mended(&bytes, channel, &map.file, &map.place, false).ok()?;
+    Some(DecodedMap { image, hash: fnv1a(&bytes), remark })
 }
 
 /// Returns the image whose texels have the gain and base of `-mm`; `None` without the option, or if the image cannot be
 /// read.
-fn levelled(map: &OpenMap, channel: Channel, sources: &mut Vec<(PathBuf, u64)>) -> Option<DecodedImage> {
+fn levelled(map: &OpenMap, channel: Channel, sources: &mut Vec<(PathBuf, u64)>) -> Option<DecodedMap> {
     let [base, gain] = map.options.levels;
     if (base, gain) == (0.0, 1.0) {
         return None;
     }
-    let (image, hash) = decoded(map, channel)?;
+    let found = decoded(map, channel)?;
     if !sources.iter().any(|source| source.0 == map.file) {
-        sources.push((map.file.clone(), hash));
+        sources.push((map.file.clone(), found.hash));
     }
+    let image = &found.image;
     let texels: Vec<Rgb> =
         image.texels.iter().map(|texel| (texel * gain + base).clamp(Rgb::ZERO, Rgb::MAX)).collect();
-    Some(DecodedImage { texels: Texels::new(image.width, &texels), ..image })
+    let image = DecodedImage { texels: Texels::new(image.width, &texels), ..*image };
+    Some(DecodedMap { image, ..found })
 }
 
 /// True if an image is bluish, as normals are and heights are not.

@@ -44,6 +44,13 @@ impl Textures {
         Arc::make_mut(&mut self.images)
     }
 
+    /// Adds images behind those that are there, which are copied.
+    pub fn add(&mut self, images: Vec<Texture>) {
+        if !images.is_empty() {
+            self.images = self.images.iter().cloned().chain(images).collect();
+        }
+    }
+
     /// Returns the colour of a texture at a point with the texture coordinates `uv`; white if there is no such texture.
     /// `attribute` returns the value of an attribute at the point.
     #[inline]

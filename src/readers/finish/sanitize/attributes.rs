@@ -1,8 +1,9 @@
 //! Repairs of the values of attributes. Those that would create energy are clamped, as texels are.
 
-use super::materials::{clamp_texels, clamp_value};
 use super::report::SanitizeReport;
+use super::texels::clamp_value;
 use crate::draft::Draft;
+use crate::error::{Log, SceneError};
 use base::math::Rgb;
 use scene::{AttributeId, Material, Parameter, TextureId, Textures};
 
@@ -12,28 +13,46 @@ struct AttributeUse {
     limit: Rgb,
 }
 
-/// Repairs the attributes of all meshes, and clamps the images that materials multiply with them.
-pub(super) fn repair_attributes(draft: &mut Draft, report: &mut SanitizeReport) {
+/// Repairs the attributes of all meshes, and names values that are no numbers or negative.
+pub(super) fn repair_attributes(
+    draft: &mut Draft,
+    report: &mut SanitizeReport,
+    log: &mut Log,
+) -> Result<(), SceneError> {
     if draft.attribute_names.is_empty() {
-        return;
+        return Ok(());
     }
-    let textures = &mut draft.scene.textures;
+    let textures = &draft.scene.textures;
     let uses: Vec<Vec<AttributeUse>> =
-        draft.scene.materials.iter().map(|material| uses(material, textures, report)).collect();
-    let names = &draft.attribute_names;
+        draft.scene.materials.iter().map(|material| uses(material, textures)).collect();
+    let (names, place) = (&draft.attribute_names, draft.main_file());
     for mesh in &mut draft.meshes {
         let of_material = uses.get(mesh.material.0 as usize);
         for attribute in &mut mesh.attributes {
             let is_it = |of: &&AttributeUse| names.get(of.attribute.0 as usize) == Some(&attribute.name);
             let limits = of_material.into_iter().flatten().filter(is_it).map(|of| of.limit);
             let limit = limits.fold(Rgb::MAX, Rgb::min);
+            let before = report.bad_texels;
             attribute.values.all_mut().iter_mut().for_each(|value| clamp_value(value, limit, report));
+            if report.bad_texels > before {
+                let count = report.bad_texels - before;
+                let what = format!(
+                    "mesh \"{}\": {count} values of the attribute \"{}\" are infinite, negative or no numbers",
+                    mesh.name, attribute.name
+                );
+                log.warn(
+                    &place,
+                    what,
+                    "infinity counts as 65504 or the greatest value allowed, others as 0",
+                )?;
+            }
         }
     }
+    Ok(())
 }
 
-/// Returns the attributes that a material uses, and clamps the images that it multiplies with them.
-fn uses(material: &Material, textures: &mut Textures, report: &mut SanitizeReport) -> Vec<AttributeUse> {
+/// Returns the attributes that a material uses.
+fn uses(material: &Material, textures: &Textures) -> Vec<AttributeUse> {
     let mut material = material.clone();
     let mut factors: Vec<(TextureId, Rgb)> = Vec::new();
     for parameter in material.reflectances_mut() {
@@ -48,13 +67,10 @@ fn uses(material: &Material, textures: &mut Textures, report: &mut SanitizeRepor
             factors.push((texture, Rgb::splat(scale)));
         }
     }
-    let mut uses = Vec::new();
-    for (texture, scale) in factors {
-        let Some(found) = textures.attribute(texture).copied() else { continue };
-        uses.push(AttributeUse { attribute: found.attribute, limit: scale.max(Rgb::ONE).recip() });
-        if let Some(image) = found.image.and_then(|image| textures.edit().get_mut(image.0 as usize)) {
-            clamp_texels(image, Rgb::ONE, report);
-        }
-    }
-    uses
+    let of_factor = |(texture, scale): (TextureId, Rgb)| {
+        let found = textures.attribute(texture)?;
+        let limit = scale.max(Rgb::splat(f32::MIN_POSITIVE)).recip();
+        Some(AttributeUse { attribute: found.attribute, limit })
+    };
+    factors.into_iter().filter_map(of_factor).collect()
 }

@@ -2,11 +2,13 @@
 
 use super::reach::{IN_REACH, is_within_reach};
 use super::report::SanitizeReport;
-use crate::draft::Draft;
+use super::texels::TexelLimits;
+use crate::draft::{Draft, DraftMesh};
 use crate::error::{Location, SceneError};
 use crate::finish::dark::is_dark_emission;
 use crate::local::LocalCoordinates;
 use base::math::Rgb;
+use glam::DVec3;
 use scene::{DeltaLight, Environment, Texture, TextureId};
 
 /// Checks all lights, and drops black ones.
@@ -30,13 +32,30 @@ pub(super) fn check_lights(
         .lights
         .retain(|(light, _)| intensity(light) != Rgb::ZERO && !image(light).is_some_and(is_dark_image));
     report.black_lights += before - draft.lights.len() - scene.discs.len();
-    if let Some(environment) = &mut scene.environment
-        && is_dark(environment, &place, report)?
+    if let Some(environment) = &scene.environment
+        && is_dark(environment, &place)?
     {
         report.black_lights += 1;
         scene.environment = None;
     }
     Ok(())
+}
+
+/// Raises texels of emitters and lights to 0.
+pub(super) fn fit_light_texels(
+    meshes: &mut [DraftMesh],
+    lights: &mut [(DeltaLight, DVec3)],
+    texels: &mut TexelLimits,
+    place: &Location,
+    report: &mut SanitizeReport,
+) {
+    let of_meshes = meshes.iter_mut().filter_map(|mesh| mesh.emission.as_mut()?.texture.as_mut());
+    let of_lights = lights.iter_mut().filter_map(|(light, _)| match light {
+        DeltaLight::Spot { image, .. } => image.as_mut().map(|image| &mut image.texture),
+        DeltaLight::Projector { projector, .. } => projector.texture.as_mut(),
+        DeltaLight::Point { .. } | DeltaLight::Directional { .. } => None,
+    });
+    of_meshes.chain(of_lights).for_each(|id| texels.limit(id, Rgb::MAX, place, report));
 }
 
 /// Rejects light that is negative, infinite or NaN.
@@ -105,22 +124,13 @@ fn check_delta_lights(draft: &Draft, coordinates: &LocalCoordinates) -> Result<(
     Ok(())
 }
 
-/// Checks an environment, and sets its bad texels to 0; returns true if it is black.
-fn is_dark(
-    environment: &mut Environment,
-    place: &Location,
-    report: &mut SanitizeReport,
-) -> Result<bool, SceneError> {
+/// Checks an environment; returns true if it is black.
+fn is_dark(environment: &Environment, place: &Location) -> Result<bool, SceneError> {
     match environment {
         Environment::Constant(radiance) => {
             check_light(*radiance, "the environment's radiance", place)?;
             Ok(*radiance == Rgb::ZERO)
         }
-        Environment::Map(map) => {
-            let bad = map.radiance.iter_mut().filter(|r| !r.is_finite() || r.min_element() < 0.0);
-            report.bad_texels +=
-                bad.map(|r| *r = if r.is_finite() { r.max(Rgb::ZERO) } else { Rgb::ZERO }).count();
-            Ok(map.radiance.iter().all(|r| *r == Rgb::ZERO))
-        }
+        Environment::Map(map) => Ok(map.radiance.iter().all(|r| *r == Rgb::ZERO)),
     }
 }

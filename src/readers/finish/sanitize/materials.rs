@@ -1,9 +1,10 @@
 //! Checks of materials. Numbers out of range are errors; reflectances and texels that would create energy are clamped.
 
 use super::report::SanitizeReport;
+use super::texels::TexelLimits;
 use crate::error::{Location, Log, SceneError};
 use base::math::Rgb;
-use scene::{Fresnel, Lobe, Material, Principled, Reflectance, Relief, Roughness, Share, Texels, Texture};
+use scene::{Fresnel, Lobe, Material, Parameter, Principled, Reflectance, Relief, Roughness, Share};
 
 /// Excess of a reflectance over 1 that counts as rounding.
 const ALBEDO_SLACK: f32 = 1e-3;
@@ -17,30 +18,30 @@ const MAX_CONDUCTOR: f32 = 1e6;
 /// Checks a material and the materials mixed with it; clamps reflectances and texels.
 pub(super) fn check_material(
     material: &mut Material,
-    textures: &mut [Texture],
+    texels: &mut TexelLimits,
     place: &Location,
     report: &mut SanitizeReport,
     log: &mut Log,
 ) -> Result<(), SceneError> {
     let checks = MaterialChecks { name: material.name.clone(), place };
-    if let Some(principled) = &material.principled {
+    if let Some(principled) = &mut material.principled {
         checks.principled(principled)?;
-        if let Some(thin) = &principled.thin {
-            checks.thin(thin, textures, report)?;
+        if let Some(thin) = &mut principled.thin {
+            checks.thin(thin, texels, report)?;
         }
     }
     for lobe in &mut material.lobes {
-        checks.lobe(lobe, textures, report)?;
+        checks.lobe(lobe, texels, report)?;
     }
     if let Some(blend) = &mut material.blend {
-        check_material(&mut blend.other, textures, place, report, log)?;
+        check_material(&mut blend.other, texels, place, report, log)?;
     }
     checks.indices_of_refraction(material)?;
     for reflectance in material.reflectances_mut() {
-        checks.reflectance(reflectance, textures, report, log)?;
+        checks.reflectance(reflectance, texels, report, log)?;
     }
     for share in material.shares_mut() {
-        checks.share(share, textures, report)?;
+        checks.share(share, texels, report)?;
     }
     if let Some(relief) = &material.relief {
         let (Relief::Normals { strength: factor, .. } | Relief::Heights { scale: factor, .. }) = relief;
@@ -90,8 +91,8 @@ impl MaterialChecks<'_> {
     /// Checks the share of diffuse light that a sheet transmits. The factor on its texels may be below 1.
     fn thin(
         &self,
-        share: &Share,
-        textures: &mut [Texture],
+        share: &mut Share,
+        texels: &mut TexelLimits,
         report: &mut SanitizeReport,
     ) -> Result<(), SceneError> {
         let (Share::Constant(value) | Share::Textured { scale: value, .. }) = *share;
@@ -99,10 +100,8 @@ impl MaterialChecks<'_> {
             let what = format!("it transmits {} of its diffuse light", 2.0 * value);
             return Err(self.wrong(what, "give 0 to 2"));
         }
-        if let Share::Textured { texture, .. } = share
-            && let Some(texture) = textures.get_mut(texture.0 as usize)
-        {
-            limit_texels(texture, Rgb::splat(value.max(f32::MIN_POSITIVE).recip()), report);
+        if let Share::Textured { texture, scale } = share {
+            texels.fit(texture, Rgb::splat(*scale), self.place, report);
         }
         Ok(())
     }
@@ -111,7 +110,7 @@ impl MaterialChecks<'_> {
     fn lobe(
         &self,
         lobe: &mut Lobe,
-        textures: &mut [Texture],
+        texels: &mut TexelLimits,
         report: &mut SanitizeReport,
     ) -> Result<(), SceneError> {
         if let Lobe::Rough { fresnel: Fresnel::Conductor { eta, k }, .. }
@@ -126,10 +125,10 @@ impl MaterialChecks<'_> {
         }
         match lobe {
             Lobe::Rough { alpha, .. } | Lobe::RoughDielectric { alpha, .. } => {
-                self.roughness(alpha, textures, report)
+                self.roughness(alpha, texels, report)
             }
             Lobe::Anisotropic { alpha, .. } => {
-                alpha.iter_mut().try_for_each(|alpha| self.roughness(alpha, textures, report))
+                alpha.iter_mut().try_for_each(|alpha| self.roughness(alpha, texels, report))
             }
             Lobe::Mirror { .. } | Lobe::Dielectric { .. } => Ok(()),
         }
@@ -138,7 +137,7 @@ impl MaterialChecks<'_> {
     fn roughness(
         &self,
         alpha: &mut Roughness,
-        textures: &mut [Texture],
+        texels: &mut TexelLimits,
         report: &mut SanitizeReport,
     ) -> Result<(), SceneError> {
         let (Roughness::Constant(value) | Roughness::Textured { scale: value, .. }) = alpha;
@@ -148,9 +147,7 @@ impl MaterialChecks<'_> {
         match alpha {
             Roughness::Constant(value) => *value = value.max(MIN_ALPHA),
             Roughness::Textured { texture, scale } => {
-                if let Some(texture) = textures.get_mut(texture.0 as usize) {
-                    clamp_texels(texture, Rgb::splat(*scale), report);
-                }
+                texels.fit(texture, Rgb::splat(*scale), self.place, report);
             }
         }
         Ok(())
@@ -176,7 +173,7 @@ impl MaterialChecks<'_> {
     fn reflectance(
         &self,
         reflectance: &mut Reflectance,
-        textures: &mut [Texture],
+        texels: &mut TexelLimits,
         report: &mut SanitizeReport,
         log: &mut Log,
     ) -> Result<(), SceneError> {
@@ -198,9 +195,7 @@ impl MaterialChecks<'_> {
                     let what = format!("the texture's factor {scale} is negative or not a number");
                     return Err(self.wrong(what, "give 0 to 1"));
                 }
-                if let Some(texture) = textures.get_mut(texture.0 as usize) {
-                    clamp_texels(texture, *scale, report);
-                }
+                texels.fit(texture, *scale, self.place, report);
             }
         }
         Ok(())
@@ -209,16 +204,19 @@ impl MaterialChecks<'_> {
     fn share(
         &self,
         share: &mut Share,
-        textures: &mut [Texture],
+        texels: &mut TexelLimits,
         report: &mut SanitizeReport,
     ) -> Result<(), SceneError> {
-        let (Share::Constant(value) | Share::Textured { scale: value, .. }) = share;
-        if !(*value >= 0.0 && *value <= 1.0 + ALBEDO_SLACK) {
+        let (value, most) = match share {
+            Parameter::Constant(value) => (value, 1.0),
+            Parameter::Textured { scale, .. } => (scale, f32::MAX),
+        };
+        if !(*value >= 0.0 && *value <= most + ALBEDO_SLACK) {
             return Err(self.wrong(format!("a share of {value}"), "give 0 to 1"));
         }
-        *value = value.min(1.0);
-        if let Share::Textured { texture, .. } = share {
-            textures.get_mut(texture.0 as usize).into_iter().for_each(|t| clamp_texels(t, Rgb::ONE, report));
+        *value = value.min(most);
+        if let Parameter::Textured { texture, scale } = share {
+            texels.fit(texture, Rgb::splat(*scale), self.place, report);
         }
         Ok(())
     }
@@ -256,31 +254,4 @@ fn scale_sum(
         }
     }
     Ok(())
-}
-
-pub(super) fn clamp_texels(texture: &mut Texture, scale: Rgb, report: &mut SanitizeReport) {
-    limit_texels(texture, scale.max(Rgb::ONE).recip(), report);
-}
-
-/// Clamps texels to numbers from 0 to `limit`.
-fn limit_texels(texture: &mut Texture, limit: Rgb, report: &mut SanitizeReport) {
-    let fits = |texel: Rgb| texel.cmpge(Rgb::ZERO).all() && texel.cmple(limit).all();
-    if texture.texels.all(fits) {
-        return;
-    }
-    let mut texels: Vec<Rgb> = texture.texels.iter().collect();
-    texels.iter_mut().for_each(|texel| clamp_value(texel, limit, report));
-    texture.texels = Texels::new(texture.width, &texels);
-}
-
-/// Raises a value to 0 and lowers it to a limit; NaN becomes 0.
-pub(super) fn clamp_value(value: &mut Rgb, limit: Rgb, report: &mut SanitizeReport) {
-    if !value.is_finite() || value.min_element() < 0.0 {
-        report.bad_texels += 1;
-        *value = if value.is_nan() { Rgb::ZERO } else { value.max(Rgb::ZERO) };
-    }
-    if value.cmpgt(limit).any() {
-        report.clamped += 1;
-        *value = value.min(limit);
-    }
 }

@@ -14,6 +14,7 @@ mod meshes;
 mod places;
 mod reach;
 mod report;
+mod texels;
 
 use super::coincident::drop_coincident_emitters;
 use super::framing;
@@ -22,11 +23,13 @@ use crate::error::{Log, SceneError};
 use crate::local::LocalCoordinates;
 use attributes::repair_attributes;
 use glam::{Vec2, Vec4};
-use lights::check_lights;
+use lights::{check_lights, fit_light_texels};
 use materials::check_material;
 use meshes::{drop_rounded, drop_unusable, repair_normals, use_all_vertices};
 use places::{drop_places, set_coordinates};
+use scene::{AttributeTexture, Scene};
 use std::iter;
+use texels::TexelLimits;
 
 pub(crate) use cameras::check_camera;
 pub use report::SanitizeReport;
@@ -73,13 +76,8 @@ pub(crate) fn sanitize(
     let before = draft.meshes.len();
     draft.meshes.retain(|mesh| !mesh.triangles.is_empty());
     report.empty_meshes = before - draft.meshes.len();
-    let main_file = draft.main_file();
-    let place = |i: usize| draft.material_places.get(i).unwrap_or(&main_file);
-    for (i, material) in draft.scene.materials.iter_mut().enumerate() {
-        let checked = check_material(material, draft.scene.textures.edit(), place(i), &mut report, log);
-        log.part(checked);
-    }
-    repair_attributes(draft, &mut report);
+    check_materials(draft, &mut report, log)?;
+    repair_attributes(draft, &mut report, log)?;
     if let Some(texture) = draft.scene.textures.iter().find(|texture| !texture.to_uv.is_finite()) {
         let what = format!("the texture transform of the image \"{}\" overflows", texture.name);
         log.part::<()>(Err(draft.main_file().wrong(what, "correct its transform")));
@@ -92,6 +90,28 @@ pub(crate) fn sanitize(
     let checked = check_lights(draft, &coordinates, &mut report);
     log.conclude(checked)?;
     Ok((report, coordinates))
+}
+
+/// Checks materials, and limits the texels of all surfaces and lights.
+fn check_materials(draft: &mut Draft, report: &mut SanitizeReport, log: &mut Log) -> Result<(), SceneError> {
+    let main_file = draft.main_file();
+    let Scene { materials, textures, .. } = &mut draft.scene;
+    let mut texels = TexelLimits::new(textures);
+    for (i, material) in materials.iter_mut().enumerate() {
+        let place = draft.material_places.get(i).unwrap_or(&main_file);
+        let checked = check_material(material, &mut texels, place, report, log);
+        log.part(checked);
+    }
+    let mut attributes: Vec<AttributeTexture> = textures.attributes().to_vec();
+    attributes.iter_mut().for_each(|of| texels.fit_image(of, &main_file, report));
+    fit_light_texels(&mut draft.meshes, &mut draft.lights, &mut texels, &main_file, report);
+    let (copies, remarks) = texels.finish();
+    remarks.into_iter().try_for_each(|remark| log.add(remark))?;
+    if !copies.is_empty() {
+        textures.add(copies);
+        *textures = std::mem::take(textures).with_attributes(attributes);
+    }
+    Ok(())
 }
 
 /// Sets texture coordinates and tangents that are not finite to zero.

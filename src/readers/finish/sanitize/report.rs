@@ -26,7 +26,7 @@ pub struct SanitizeReport {
     pub bad_tangents: usize,
     /// Reflectances clamped to 1, and texels and attributes clamped to values that cannot create energy.
     pub clamped: usize,
-    /// NaN, infinite or negative texels and attributes, set to 0.
+    /// NaN, infinite or negative values of attributes, and negative texels.
     pub bad_texels: usize,
     /// Emitters, lights and environments without light, dropped.
     pub black_lights: usize,
@@ -52,7 +52,7 @@ impl fmt::Display for SanitizeReport {
             (self.bad_uvs, "NaN texture coordinates set to 0"),
             (self.bad_tangents, "NaN tangents left out"),
             (self.clamped, "reflectances clamped"),
-            (self.bad_texels, "NaN or negative texels set to 0"),
+            (self.bad_texels, "NaN, infinite or negative values mended"),
             (self.black_lights, "lights without light dropped"),
         ];
         let said: Vec<String> =

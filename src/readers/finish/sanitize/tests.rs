@@ -253,7 +253,7 @@ fn cameras_and_lights_stand_where_f32_has_numbers() {
 
 #[test]
 fn texels_are_clamped_to_what_their_factor_leaves() {
-    let texels = vec![Rgb::splat(0.9), Rgb::splat(f32::NAN), Rgb::new(-1.0, 0.2, 0.2), Rgb::splat(0.4)];
+    let texels = vec![Rgb::splat(0.9), Rgb::splat(5.0), Rgb::new(-1.0, 0.2, 0.2), Rgb::splat(0.4)];
     let texture = Texture {
         name: "t".into(),
         width: 2,
@@ -263,13 +263,29 @@ fn texels_are_clamped_to_what_their_factor_leaves() {
         wrap: Wrap::Repeat,
         to_uv: glam::Mat3::IDENTITY,
     };
-    let diffuse = Reflectance::Textured { texture: TextureId(0), scale: Rgb::splat(2.0) };
-    let mut d = draft(vec![], vec![Material { diffuse, ..grey() }]);
+    let of_scale = |scale: f32| {
+        let diffuse = Reflectance::Textured { texture: TextureId(0), scale: Rgb::splat(scale) };
+        Material { diffuse, ..grey() }
+    };
+    let lamp = Emission { radiance: Rgb::ONE, texture: Some(TextureId(0)), two_sided: false };
+    let lamp = DraftMesh { emission: Some(lamp), material: MaterialId(0), ..triangle_mesh() };
+    let mut d = draft(vec![lamp], vec![of_scale(2.0), of_scale(0.25), of_scale(2.0)]);
     d.scene.textures = vec![texture].into();
-    let (report, _) = sanitize(&mut d).unwrap();
-    assert_eq!((report.clamped, report.bad_texels), (1, 2));
-    let expected = [Rgb::splat(0.5), Rgb::ZERO, Rgb::new(0.0, 0.2, 0.2), Rgb::splat(0.4)];
-    assert!(d.scene.textures[0].texels.iter().eq(expected));
+    let mut log = Log::new(false);
+    let (report, _) = super::sanitize(&mut d, &mut log).unwrap();
+    assert_eq!((report.clamped, report.bad_texels), (3, 3));
+    let red = |texture: TextureId| {
+        let texels = &d.scene.textures[texture.0 as usize].texels;
+        texels.iter().map(|texel| texel.x).collect::<Vec<f32>>()
+    };
+    let of_material = |i: usize| red(d.scene.materials[i].diffuse.texture().unwrap());
+    assert_eq!(of_material(0), [0.5, 0.5, 0.0, 0.4]);
+    assert_eq!(of_material(1), [0.9, 4.0, 0.0, 0.4]);
+    assert_eq!(of_material(2), of_material(0));
+    // Light has no upper limit.
+    assert_eq!(red(d.meshes[0].emission.unwrap().texture.unwrap()), [0.9, 5.0, 0.0, 0.4]);
+    let said = log.into_warnings()[0].to_string();
+    assert!(said.contains("\"t\": the texel in column 1 of row 2 is negative"), "{said}");
 }
 
 #[test]

@@ -133,7 +133,7 @@ pub(in crate::mitsuba) const SENSORS: &[Statement] = &[
     named("orthographic: srf", "sensitivity of sRGB"),
     refused("batch", ""),
     refused("distant", ""),
-    refused("irradiancemeter", ""),
+    refused("irradiancemeter", "as the camera; inside a shape it is left out, with a warning"),
     refused("radiancemeter", ""),
     refused("telecentric", "0.6"),
     refused("spherical", "0.6"),

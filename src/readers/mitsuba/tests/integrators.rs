@@ -85,7 +85,8 @@ fn what_stands_where_nothing_reads_it_is_named() {
         ),
         ("<shape type=\"cube\"><bsdf type=\"diffuse\"/><bsdf type=\"plastic\"/></shape>", "second <bsdf>"),
         ("<shape type=\"cube\"><emitter type=\"area\"/><emitter type=\"area\"/></shape>", "second <emitter>"),
-        ("<shape type=\"cube\"><sensor type=\"perspective\"/></shape>", "a child"),
+        ("<shape type=\"cube\"><sensor type=\"perspective\"/></shape>", "the sensor"),
+        ("<shape type=\"cube\"><sensor type=\"irradiancemeter\"/></shape>", "\"irradiancemeter\""),
         ("<shape type=\"cube\"><medium name=\"interior\" type=\"homogeneous\"/></shape>", "\"interior\""),
         (
             "<shape type=\"cube\"><bsdf type=\"twosided\"><bsdf type=\"diffuse\"/><bsdf type=\"plastic\"/></bsdf></shape>",
