@@ -202,7 +202,7 @@ impl Converter<'_> {
         Ok(match self.texture(texture, 0)? {
             Reflectance::Constant(colour) => Parameter::Constant(luminance(colour)),
             Reflectance::Textured { texture, scale } => {
-                Parameter::Textured { texture, scale: luminance(scale) }
+                Parameter::Textured { texture: self.of_numbers(texture), scale: luminance(scale) }
             }
         })
     }

@@ -9,7 +9,7 @@ use base::math::Rgb;
 use glam::{DVec3, Vec3};
 use scene::{
     DeltaLight, Distribution, Environment, Fresnel, Lobe, Material, PixelFilter, Projection, Reflectance,
-    Roughness, Share,
+    Roughness, Share, TextureId,
 };
 use std::fs;
 
@@ -334,4 +334,23 @@ fn lenses_parallel_projections_and_filters_are_read() {
     assert_eq!(still.filter, PixelFilter::Lanczos);
     let what: Vec<&str> = warnings.iter().map(|w| w.what.as_str()).collect();
     assert!(matches!(what[..], [a] if a.contains("scales")), "{what:?}");
+}
+
+#[test]
+fn checkerboards_of_numbers_have_their_squares_exchanged_in_version_3() {
+    let board = |name: &str| {
+        format!(
+            "<texture type=\"checkerboard\" name=\"{name}\"><float name=\"color0\" value=\".7\"/>\
+             <float name=\"color1\" value=\".1\"/></texture>"
+        )
+    };
+    let (mask, colour) = (board("opacity"), board("reflectance"));
+    let body = format!(
+        "<shape type=\"rectangle\"><bsdf type=\"mask\">{mask}<bsdf type=\"diffuse\">{colour}</bsdf></bsdf></shape>"
+    );
+    let scene = load_body(&body).unwrap().scene;
+    let material = scene.materials.iter().find(|material| material.opacity.is_some()).unwrap();
+    let at_origin = |id: TextureId| scene.textures.by_id(id).unwrap().lookup(glam::Vec2::new(0.2, 0.8)).x;
+    let found = [material.opacity.unwrap().texture(), material.diffuse.texture()];
+    assert_eq!(found.map(|id| at_origin(id.unwrap())), [0.7, 0.1]);
 }

@@ -12,10 +12,13 @@ use crate::file::read_text;
 use crate::plan::{TexturePlan, TextureSource};
 use base::math::Rgb;
 use glam::{DMat3, DMat4, DVec2, DVec3};
-use scene::{Filter, Reflectance, Texels, Wrap};
+use scene::{Filter, Reflectance, Texels, TextureId, Wrap};
 
 /// RGB value of an emissive spectrum of 1 at every wavelength, in the `rgb` variants of Mitsuba 3.
 const EQUAL_ENERGY: DVec3 = DVec3::new(1.204795, 0.94829, 0.908915);
+
+/// Name of checkerboards.
+const CHECKERBOARD: &str = "checkerboard";
 
 impl Converter<'_> {
     /// Returns a constant reflectance colour; `None` if the parameter is absent or a texture.
@@ -248,12 +251,28 @@ impl Converter<'_> {
         let image = DecodedImage { width: 2, height: 2, texels };
         let texture = self.contents.add_texture(TexturePlan {
             place: object.place.clone(),
-            image: TextureSource::Ready("checkerboard".into(), image),
+            image: TextureSource::Ready(CHECKERBOARD.into(), image),
             filter: Filter::Nearest,
             wrap: Wrap::Repeat,
             to_uv: self.to_uv(object)?,
         });
         Ok(Reflectance::Textured { texture, scale: Rgb::ONE })
+    }
+
+    /// Returns a texture as it looks to a number. Mitsuba 3 exchanges the squares of checkerboards there.
+    pub(super) fn of_numbers(&mut self, id: TextureId) -> TextureId {
+        match self.contents.textures.get(id.0 as usize) {
+            Some(TexturePlan { image: TextureSource::Ready(name, image), .. })
+                if name == CHECKERBOARD && !self.document.is_old =>
+            {
+                let (even, odd) = (image.texels.get(0, 0), image.texels.get(1, 0));
+                let image = DecodedImage { texels: Texels::new(2, &[odd, even, even, odd]), ..*image };
+                let image = TextureSource::Ready(format!("{CHECKERBOARD} of numbers"), image);
+                let plan = TexturePlan { image, ..self.contents.textures[id.0 as usize].clone() };
+                self.contents.add_texture(plan)
+            }
+            _ => id,
+        }
     }
 
     fn to_uv(&self, object: &Object) -> Result<glam::Mat3, SceneError> {

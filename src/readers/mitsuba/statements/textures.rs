@@ -23,7 +23,7 @@ pub(in crate::mitsuba) const TEXTURES: &[Statement] = &[
     named("bitmap: wrap_mode_u", "0.6: repeated"),
     named("bitmap: wrap_mode_v", "0.6: repeated"),
     named("bitmap: channel", "0.6: all channels"),
-    read("checkerboard", ""),
+    read("checkerboard", "as a number, with its squares exchanged, as in Mitsuba 3"),
     read("checkerboard: color0", "a colour"),
     read("checkerboard: color1", "a colour"),
     read("checkerboard: to_uv", ""),
