@@ -78,18 +78,20 @@ impl Crossed {
         if self.many.is_empty() { &mut self.few[..self.count] } else { &mut self.many }
     }
 
-    /// Returns the share of the light that passes all sheets. Sheets closer to each other than rounding count as one,
-    /// the first.
-    fn transmittance(&mut self, world: &World, segment: &Ray) -> Rgb {
+    /// Returns the share of the light that passes all sheets, 0 if there are more than `most`. Sheets closer to each
+    /// other than rounding count as one, the first.
+    fn transmittance(&mut self, world: &World, segment: &Ray, most: u32) -> Rgb {
         let crossings = self.all();
         crossings.sort_unstable_by(|a, b| a.hit.t.total_cmp(&b.hit.t));
         let Some(last) = crossings.last() else { return Rgb::ONE };
         let length = segment.direction.length();
         let largest = segment.origin.abs().max_element() + last.hit.t * length;
         let slack = 1.01 * largest * (ULPS * f32::EPSILON) / (MIN_COS * length);
-        let (mut transmittance, mut from) = (Rgb::ONE, f32::NEG_INFINITY);
+        let (mut transmittance, mut from, mut left) = (Rgb::ONE, f32::NEG_INFINITY, most);
         for (i, Crossing { hit, share }) in crossings.iter().enumerate() {
             if hit.t > from {
+                let Some(fewer) = left.checked_sub(1) else { return Rgb::ZERO };
+                left = fewer;
                 transmittance *= *share;
                 let is_close = crossings.get(i + 1).is_some_and(|next| !(next.hit.t > hit.t + slack));
                 from = if is_close { world.behind(segment, hit) } else { hit.t };
@@ -108,6 +110,11 @@ impl World {
 
     /// Returns the share of the light that passes the sheets on a segment that is not occluded.
     pub fn transmittance(&self, segment: &Ray) -> Rgb {
+        self.transmittance_of(segment, u32::MAX)
+    }
+
+    /// Returns the [`World::transmittance`] of a segment, 0 if it passes more than `most` sheets.
+    pub fn transmittance_of(&self, segment: &Ray, most: u32) -> Rgb {
         let Some(sheets) = &self.sheets else { return Rgb::ONE };
         let out = -segment.direction.normalize();
         let (mut crossed, mut last) = (Crossed::new(), None);
@@ -118,7 +125,7 @@ impl World {
         if !is_free {
             return Rgb::ZERO;
         }
-        let passed = crossed.transmittance(self, segment);
+        let passed = crossed.transmittance(self, segment, most);
         match self.absorbs() {
             true => passed * self.share_between(segment, crossed.all().iter().map(|crossing| crossing.hit)),
             false => passed,
@@ -150,11 +157,17 @@ impl World {
         })
     }
 
-    /// Calls `through` with each lane of `lanes` and its [`World::transmittance`], if there are sheets.
+    /// Calls `through` with each lane of `lanes` and its [`World::transmittance_of`], if there are sheets.
     #[inline]
-    pub fn transmittance16(&self, segments: &Rays16, lanes: u16, mut through: impl FnMut(usize, Rgb)) {
+    pub fn transmittance16(
+        &self,
+        segments: &Rays16,
+        lanes: u16,
+        most: u32,
+        mut through: impl FnMut(usize, Rgb),
+    ) {
         if self.has_sheets() {
-            lanes_in(lanes).for_each(|lane| through(lane, self.transmittance(&segments.get(lane))));
+            lanes_in(lanes).for_each(|lane| through(lane, self.transmittance_of(&segments.get(lane), most)));
         }
     }
 }

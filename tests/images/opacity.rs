@@ -2,10 +2,11 @@
 
 use crate::kit::*;
 use crate::oracle::{assert_means_within, mean};
+use crate::presets::direct_only;
 use glam::{DVec3, Vec2, Vec3};
 use lightsplat::math::Rgb;
-use lightsplat::method::path;
-use lightsplat::scene::{Environment, Filter, Material, Share, Texture};
+use lightsplat::method::{Renderer, path};
+use lightsplat::scene::{DeltaLight, Environment, Filter, Material, Share, Texture};
 
 /// Loads the first of some files, all of them in one folder.
 fn files(files: &[(&str, &str)]) -> WorldAndView {
@@ -86,5 +87,32 @@ fn seen_masks_are_sharp_and_blends_are_smooth() {
         assert!((blend[x] - expected).abs() < 0.15, "{x}: {} for {expected}", blend[x]);
         // The border lies between two pixels.
         assert_eq!(cut[x], if alpha > 0.75 { 3.0 } else { 1.0 }, "{x}");
+    }
+}
+
+#[test]
+fn masks_that_light_passes_count_as_edges() {
+    let methods: [(&str, Box<dyn Renderer>); 2] = [
+        ("path", Box::new(path::Settings { spp: 256, ..Default::default() })),
+        ("cache", Box::new(direct_only())),
+    ];
+    // The eye is below the mask or above it. Light from above has one edge less to the eye below.
+    for (height, max_depth, expected) in [(0.5, 2, 0.0), (0.5, 3, 0.5), (2.0, 3, 0.0), (2.0, 4, 0.25)] {
+        let mut scene = scene(camera(Vec3::new(0.0, height, 0.01), Vec3::ZERO, 1e-3), [8, 8]);
+        scene.max_depth = Some(max_depth);
+        let floor = add_material(&mut scene, diffuse(Rgb::splat(0.5)));
+        let mask = Material { opacity: Some(Share::Constant(0.5)), two_sided: true, ..diffuse(Rgb::ZERO) };
+        let mask = add_material(&mut scene, mask);
+        for (y, material) in [(0.0, floor), (1.0, mask)] {
+            scene.meshes.push(quad(Vec3::new(-5.0, y, -5.0), Vec3::Z * 10.0, Vec3::X * 10.0, material));
+        }
+        let irradiance = Rgb::splat(2.0 * std::f32::consts::PI);
+        scene.lights.push(DeltaLight::Directional { direction: Vec3::NEG_Y, irradiance });
+        let world = world(scene);
+        for (name, method) in &methods {
+            let found = mean(&image(&world, &**method));
+            let what = format!("{name}, at most {max_depth} edges, eye at {height}");
+            assert!((found - DVec3::splat(expected)).abs().max_element() < 0.02, "{what}: {found}");
+        }
     }
 }

@@ -54,7 +54,7 @@ pub struct CausticPhoton {
     pub flux: Rgb,
     /// Luminance of the emitter's radiance along the path's first edge; infinite for emitters that no path can meet.
     pub radiance: f32,
-    /// Number of edges of the path. Edges before and behind a sheet that light passes straight count as one.
+    /// Number of edges of the path.
     pub edges: u32,
     /// Radius of the photon's disc; 0 until it is known.
     pub radius: f32,
@@ -241,10 +241,11 @@ fn follow(
         }
         flux = next / survival;
         interior = world.interior_after(interior, &surface, direction, s.straight);
+        edges += 1;
         if s.straight {
             ray = beyond(&ray, surface.position, surface.normal, surface.t);
         } else {
-            (edges, is_bent) = (edges + 1, true);
+            is_bent = true;
             ray = shadow::ray_from(surface.position, surface.normal, direction);
         }
     }

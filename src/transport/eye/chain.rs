@@ -78,9 +78,8 @@ struct ChainBranch {
     ray: Ray,
     throughput: Rgb,
     eta_sq: f32,
+    /// Number of edges.
     depth: u32,
-    /// Number of edges, counting each edge through a sheet.
-    edges: u32,
     /// True if the chain has passed nothing but gaps in surfaces.
     on_eye_ray: bool,
     /// Length of the chain up to the ray's origin.
@@ -96,7 +95,7 @@ impl ChainBranch {
     /// none.
     fn radiance_of_environment(&self, world: &World) -> Option<Rgb> {
         let scene = &world.scene;
-        let is_hidden = self.edges == 1 && scene.hides_emitters || self.on_eye_ray && scene.hides_background;
+        let is_hidden = self.depth == 1 && scene.hides_emitters || self.on_eye_ray && scene.hides_background;
         let environment = world.emitters.environment.as_ref().filter(|_| !is_hidden)?;
         let direction = self.ray.direction;
         Some(match self.start {
@@ -123,7 +122,7 @@ impl ChainBranch {
     fn surviving(&self, lobe: &BsdfSample, sampler: &mut Sampler) -> Option<Rgb> {
         let throughput = self.throughput * lobe.weight;
         let carried = throughput.max_element() * (self.eta_sq * lobe.eta * lobe.eta);
-        let limit = if self.edges >= MANY_EDGES { MAX_SURVIVAL } else { 1.0 };
+        let limit = if self.depth >= MANY_EDGES { MAX_SURVIVAL } else { 1.0 };
         let survival = (carried / ROULETTE_THROUGHPUT).min(limit);
         if survival < 1.0 {
             return (sampler.next_1d() < survival).then_some(throughput / survival);
@@ -139,8 +138,7 @@ impl ChainBranch {
             ray: shadow::ray_from(surface.position, surface.normal, direction),
             throughput: self.throughput,
             eta_sq: self.eta_sq * lobe.eta * lobe.eta,
-            depth: self.depth + u32::from(!lobe.straight),
-            edges: self.edges + 1,
+            depth: self.depth + 1,
             on_eye_ray: self.on_eye_ray && lobe.straight && at.bsdf.passes_gaps_alone(),
             distance: at.distance,
             start: self.start,
@@ -160,10 +158,9 @@ struct ChainBranches {
 impl ChainBranches {
     /// Begins a chain with an eye ray.
     fn new(ray: Ray) -> ChainBranches {
-        let (throughput, eta_sq, depth, edges, distance) = (Rgb::ONE, 1.0, 1, 1, 0.0);
+        let (throughput, eta_sq, depth, distance) = (Rgb::ONE, 1.0, 1, 0.0);
         let (on_eye_ray, start, interior) = (true, None, Interior::NONE);
-        let first =
-            ChainBranch { ray, throughput, eta_sq, depth, edges, on_eye_ray, distance, start, interior };
+        let first = ChainBranch { ray, throughput, eta_sq, depth, on_eye_ray, distance, start, interior };
         ChainBranches { current: Some(first), pending: [const { None }; PENDING], waiting: 0 }
     }
 
@@ -196,7 +193,7 @@ pub struct ChainTracer<'w> {
     pub world: &'w World,
     /// Cone around the rays.
     pub cone: Cone,
-    /// Maximum number of edges, not counting those straight through sheets.
+    /// Maximum number of edges.
     pub max_depth: u32,
     /// Lobes that the chains follow.
     pub follow: Follow,
@@ -245,11 +242,11 @@ impl<'w> ChainTracer<'w> {
             if branch.depth >= self.max_depth || !(bsdf.has_delta() || sharp.is_some()) {
                 continue;
             }
-            let wo = surface.frame.to_local(out);
+            let (wo, sheets) = (surface.frame.to_local(out), self.max_depth - branch.depth - 1);
             let lobes = bsdf.delta_lobes(wo);
             let sampled = sharp.and_then(|sharp| {
                 emitted += branch.throughput
-                    * Sharp { world, surface: &surface, lobe: &sharp, wo }.reflected(sampler, counts);
+                    * Sharp { world, surface: &surface, lobe: &sharp, wo, sheets }.reflected(sampler, counts);
                 sharp.sample(wo, sampler.next_1d(), sampler.next_2d())
             });
             for lobe in [lobes.refraction, lobes.reflection, sampled].into_iter().flatten() {

@@ -91,6 +91,8 @@ pub(super) struct Sharp<'a> {
     pub surface: &'a Surface,
     pub lobe: &'a Bsdf<'a>,
     pub wo: Vec3,
+    /// Maximum number of sheets that light from emitters passes.
+    pub sheets: u32,
 }
 
 impl Sharp<'_> {
@@ -159,9 +161,10 @@ impl Sharp<'_> {
         let Surface { position, normal: own, .. } = *self.surface;
         if distance.is_finite() {
             let share = self.world.share_from(self.surface, direction, distance);
-            share * shadow::between(self.world, position, own, position + direction * distance, normal)
+            let segment = shadow::segment(position, own, position + direction * distance, normal);
+            share * shadow::arriving(self.world, &segment, self.sheets)
         } else {
-            shadow::arriving(self.world, &shadow::ray_from(position, own, direction))
+            shadow::arriving(self.world, &shadow::ray_from(position, own, direction), self.sheets)
         }
     }
 }

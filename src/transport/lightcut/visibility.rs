@@ -78,7 +78,7 @@ impl PacketVisibility for Engine<'_> {
         if self.world().has_sheets() {
             let rays = receivers.shadow_rays(vpl, node.kind());
             let attenuate = |lane, transmittance| light.set(lane, light.get(lane) * transmittance);
-            self.world().transmittance16(&rays, lanes, attenuate);
+            self.world().transmittance16(&rays, lanes, u32::MAX, attenuate);
         }
     }
 }
@@ -90,7 +90,7 @@ impl RayVisibility for Engine<'_> {
         let free = lanes & !self.occluded16(rays, lanes);
         if self.world().has_sheets() {
             let attenuate = |lane, transmittance| light.set(lane, light.get(lane) * transmittance);
-            self.world().transmittance16(rays, free, attenuate);
+            self.world().transmittance16(rays, free, u32::MAX, attenuate);
         }
         free
     }

@@ -92,7 +92,7 @@ impl Batch {
             let step = Step { depth, max_depth, kept: &mut kept };
             self.scatter(world, &mut packet, Hit { surfaces: &surfaces, found }, step, policy, counts);
         }
-        self.finish(world, kept, depth, policy, counts);
+        self.finish(world, Step { depth, max_depth, kept: &mut kept }, policy, counts);
     }
 
     /// Traces the first edges and shades their ends in groups. Surfaces with mirrors, glass or gaps are shaded one by
@@ -134,17 +134,17 @@ impl Batch {
             let (surfaces, pixel) = (&surfaces, &packet.samplers.seed);
             let first = FirstHits16 { surfaces, directions: &directions, pixel, spacing };
             collect(world, &first, grouped, &mut groups);
-            let radiance = &mut self.radiance[..];
-            let groups = &mut groups[..];
-            let going_on =
-                GroupedVertices { world, surfaces, groups, coherent, radiance, counts: &mut *counts }
-                    .scatter(&mut packet, policy);
             let step = Step { depth: 1, max_depth, kept: &mut kept };
+            let (radiance, sheets) = (&mut self.radiance[..], step.sheets());
+            let (groups, counts) = (&mut groups[..], &mut *counts);
+            let mut vertices =
+                GroupedVertices { world, surfaces, groups, coherent, sheets, radiance, counts };
+            let going_on = vertices.scatter(&mut packet, policy);
             self.go_on(world, &mut packet, going_on, step, policy, counts);
         }
         let step = Step { depth: 1, max_depth, kept: &mut kept };
         self.scatter_single(world, &mut single, step, policy, counts);
-        self.finish(world, kept, 1, policy, counts);
+        self.finish(world, Step { depth: 1, max_depth, kept: &mut kept }, policy, counts);
     }
 
     /// Traces the edges of a packet and adds the light of those that hit nothing. Returns the lanes with hits.
@@ -198,18 +198,17 @@ impl Batch {
         if R::STOPS_AT_DIFFUSE {
             followed &= !packet.at(PathStage::Scattered) | world.specular.lanes(&surfaces.mesh);
         }
-        followed &= packet.may_go_on(step.depth, step.max_depth);
-        if followed == 0 {
+        if followed == 0 || step.depth >= step.max_depth {
             return;
         }
-        let coherent = are_coherent(world, step.depth);
+        let (coherent, sheets) = (are_coherent(world, step.depth), step.sheets());
         let arrives = |segment: Option<&Ray>, radiance: Rgb, slot: u32| {
             let Some(segment) = segment else {
                 self.radiance[slot as usize] += radiance;
                 return;
             };
             if self.shadows.push(segment, radiance, slot) {
-                self.shadows.trace(world, coherent, &mut self.radiance, counts);
+                self.shadows.trace(world, coherent, sheets, &mut self.radiance, counts);
             }
         };
         let going_on = packet.scatter(world, surfaces, step.depth, followed, policy, arrives);
@@ -231,23 +230,25 @@ impl Batch {
             let blind = policy.edges().blind;
             let (traced, outward) = split_edges(world, packet, going_on, blind, step.depth);
             going_on = traced;
-            self.add_outward(world, packet, outward, policy, counts);
+            if world.emitters.environment.is_some() {
+                self.add_outward(world, (packet, outward), step.sheets(), policy, counts);
+            }
         }
         self.keep(packet, going_on, step.kept);
     }
 
-    /// Traces the rays that still wait for a full packet, after `kept` paths were stored.
+    /// Traces the rays that still wait for a full packet.
     fn finish<'w, R: PathPolicy<'w>>(
         &mut self,
         world: &World,
-        kept: usize,
-        depth: u32,
+        step: Step,
         policy: &R,
         counts: &mut RayCounts,
     ) {
-        self.shadows.trace(world, are_coherent(world, depth), &mut self.radiance, counts);
-        self.trace_outward(world, policy, counts);
-        self.count = kept;
+        let sheets = step.sheets();
+        self.shadows.trace(world, are_coherent(world, step.depth), sheets, &mut self.radiance, counts);
+        self.trace_outward(world, sheets, policy, counts);
+        self.count = *step.kept;
     }
 
     /// Stores the paths of a packet that continue, behind the `kept` paths stored before.
@@ -263,29 +264,33 @@ impl Batch {
         }
     }
 
-    /// Adds the environment's light to the paths of a packet in the lanes of `sought` whose edges are unoccluded.
+    /// Adds the environment's light to the paths of a packet in the lanes of `sought` whose edges are unoccluded and
+    /// pass at most `sheets` sheets.
     fn add_outward<'w, R: PathPolicy<'w>>(
         &mut self,
         world: &World,
-        packet: &Packet,
-        sought: u16,
+        (packet, sought): (&Packet, u16),
+        sheets: u32,
         policy: &R,
         counts: &mut RayCounts,
     ) {
-        if world.emitters.environment.is_none() {
-            return;
-        }
         for lane in lanes_in(sought) {
             let (outward, count) = &mut self.outward;
             outward.copy_lane(*count, packet, lane);
             *count += 1;
             if *count == LANES {
-                self.trace_outward(world, policy, counts);
+                self.trace_outward(world, sheets, policy, counts);
             }
         }
     }
 
-    fn trace_outward<'w, R: PathPolicy<'w>>(&mut self, world: &World, policy: &R, counts: &mut RayCounts) {
+    fn trace_outward<'w, R: PathPolicy<'w>>(
+        &mut self,
+        world: &World,
+        sheets: u32,
+        policy: &R,
+        counts: &mut RayCounts,
+    ) {
         if self.outward.1 == 0 {
             return;
         }
@@ -295,7 +300,7 @@ impl Batch {
         let free = valid & !world.accel.occluded16(&outward.rays, valid, false);
         let throughput = &mut outward.emission_throughput;
         let attenuate = |lane, share| throughput.set(lane, throughput.get(lane) * share);
-        world.transmittance16(&outward.rays, free, attenuate);
+        world.transmittance16(&outward.rays, free, sheets, attenuate);
         self.escape(world, &outward, free, policy);
         self.outward.0 = outward;
     }
@@ -350,6 +355,13 @@ struct Step<'a> {
     depth: u32,
     max_depth: u32,
     kept: &'a mut usize,
+}
+
+impl Step<'_> {
+    /// Returns the number of sheets that light may pass on one more edge. Each begins an edge of its own.
+    fn sheets(&self) -> u32 {
+        self.max_depth.saturating_sub(self.depth).saturating_sub(1)
+    }
 }
 
 /// Returns true if the shadow rays of a packet at the end of edge `depth` are about parallel: neighbours' rays to small

@@ -25,6 +25,8 @@ pub(super) struct GroupedVertices<'a, 'w> {
     pub groups: &'a mut [Group<'w>],
     /// True if shadow rays of a packet are nearly parallel.
     pub coherent: bool,
+    /// Maximum number of sheets that light samples pass.
+    pub sheets: u32,
     /// Radiance of each path.
     pub radiance: &'a mut [Rgb],
     pub counts: &'a mut RayCounts,
@@ -140,7 +142,7 @@ impl<'w> GroupedVertices<'_, 'w> {
         let segments = segments(surfaces, &lights);
         self.counts.shadow_rays += u64::from(wanted.count_ones());
         let free = wanted & !world.accel.occluded16(&segments, wanted, self.coherent);
-        world.transmittance16(&segments, free, |lane, share| {
+        world.transmittance16(&segments, free, self.sheets, |lane, share| {
             radiance.set(lane, radiance.get(lane) * share);
         });
         for lane in lanes_in(free) {

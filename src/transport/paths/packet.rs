@@ -47,9 +47,7 @@ pub(super) struct Packet {
     pub path_class: U32x16,
     /// Values of [`PathStage`].
     pub stage: U32x16,
-    /// Numbers of sheets that light has passed straight. The edges before and behind a sheet count as one.
-    pub sheets: U32x16,
-    /// Numbers of gaps among the sheets.
+    /// Numbers of gaps that light has passed straight.
     pub gaps: U32x16,
     /// Cones around the edges.
     pub cones: [Cone; LANES],
@@ -84,7 +82,6 @@ impl Packet {
             distance: [0.0; LANES],
             path_class: [0; LANES],
             stage: [PathStage::Chain as u32; LANES],
-            sheets: [0; LANES],
             gaps: [0; LANES],
             cones: [cone; LANES],
             interior: [Interior::NONE; LANES],
@@ -107,16 +104,9 @@ impl Packet {
         self.distance[to] = packet.distance[from];
         self.path_class[to] = packet.path_class[from];
         self.stage[to] = packet.stage[from];
-        self.sheets[to] = packet.sheets[from];
         self.gaps[to] = packet.gaps[from];
         self.cones[to] = packet.cones[from];
         self.interior[to] = packet.interior[from];
-    }
-
-    /// Returns the lanes that have fewer than `max_depth` of `edges` edges, not counting sheets.
-    #[inline]
-    pub fn may_go_on(&self, edges: u32, max_depth: u32) -> u16 {
-        mask_of(&self.sheets.map(|sheets| u32::from(edges - sheets < max_depth)))
     }
 
     /// Returns the lanes whose edge `depth` continues the eye ray, through gaps at most.
@@ -157,14 +147,21 @@ impl Shadows {
         self.count == LANES
     }
 
-    /// Traces the segments and adds the light of unoccluded ones to `results`.
+    /// Traces the segments and adds the light of unoccluded ones that pass at most `sheets` sheets to `results`.
     #[inline]
-    pub fn trace(&mut self, world: &World, coherent: bool, results: &mut [Rgb], counts: &mut RayCounts) {
+    pub fn trace(
+        &mut self,
+        world: &World,
+        coherent: bool,
+        sheets: u32,
+        results: &mut [Rgb],
+        counts: &mut RayCounts,
+    ) {
         counts.shadow_rays += self.count as u64;
         let occluded = world.accel.occluded16(&self.rays, first_lanes(self.count), coherent);
         let free = first_lanes(self.count) & !occluded;
         let attenuate = |lane, share| self.radiance.set(lane, self.radiance.get(lane) * share);
-        world.transmittance16(&self.rays, free, attenuate);
+        world.transmittance16(&self.rays, free, sheets, attenuate);
         for lane in lanes_in(free) {
             results[self.slot[lane] as usize] += self.radiance.get(lane);
         }

@@ -24,7 +24,7 @@ pub struct ChainEnd<'w> {
     pub distance: f32,
     /// Hash of the surfaces and lobes along the chain: equal for paths of the same class, 0 straight from the eye.
     pub path_class: u32,
-    /// Number of edges from the eye. The edges before and behind a sheet that light passes straight count as one.
+    /// Number of edges from the eye. A sheet that light passes straight begins a new edge.
     pub depth: u32,
 }
 

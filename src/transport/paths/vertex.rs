@@ -25,9 +25,6 @@ use world::{Surfaces16, World, beyond};
 /// Vertex number, counted from the eye, from which on Russian roulette may end a path.
 const ROULETTE_DEPTH: u32 = 2;
 
-/// Maximum number of sheets that a path passes straight, so that it ends.
-const MAX_SHEETS: u32 = 64;
-
 /// Minimum density by solid angle of directions whose lobe shows images (GGX with α 0.2). Broader lobes average the
 /// texture that they see.
 const MIN_DENSITY_OF_IMAGES: f32 = 2.0;
@@ -252,8 +249,8 @@ impl Packet {
         mask_of(&std::array::from_fn(|lane| u32::from(self.throughput.get(lane).max_element() >= least)))
     }
 
-    /// Extends a lane's edge, which was that of `before`, beyond the sheet that it has hit. It remains one edge, also
-    /// in multiple importance sampling, as shadow rays pass sheets too.
+    /// Extends a lane's edge, which was that of `before`, beyond the sheet that it has hit. It remains one edge in
+    /// multiple importance sampling, as shadow rays pass sheets too.
     fn pass_sheet(&mut self, lane: usize, before: &Packet, surfaces: &Surfaces16, weight: Rgb) {
         let (position, normal) = (surfaces.position.get(lane), surfaces.normal.get(lane));
         self.rays.set(lane, &beyond(&before.rays.get(lane), position, normal, surfaces.t[lane]));
@@ -262,7 +259,6 @@ impl Packet {
         self.light_samples[lane] = before.light_samples[lane];
         self.cones[lane] = before.cones[lane];
         self.emission_throughput.set(lane, before.emission_throughput.get(lane) * weight);
-        self.sheets[lane] += u32::from(self.sheets[lane] < MAX_SHEETS);
     }
 
     /// Passes the surfaces that end chains to `policy`. Returns the lobes that chains follow.
@@ -291,7 +287,7 @@ impl Packet {
                 throughput: self.throughput.get(lane),
                 distance: self.distance[lane] + surfaces.t[lane],
                 path_class: self.path_class[lane],
-                depth: depth - self.sheets[lane],
+                depth,
             };
             let reflected = policy.reflected(&end);
             if reflected != Rgb::ZERO {

@@ -148,7 +148,7 @@ impl IndirectLight<'_> {
             let share = cos * FRAC_1_PI * weight / lights.pdf[lane];
             let arriving = near.throughput.get(lane) * lights.radiance.get(lane) * share;
             if arriving.is_finite() {
-                radiance[lane] += arriving * shadow::arriving(world, &ray);
+                radiance[lane] += arriving * shadow::arriving(world, &ray, u32::MAX);
             }
         }
     }

@@ -47,16 +47,9 @@ pub fn segment(a: Vec3, a_normal: Vec3, b: Vec3, b_normal: Vec3) -> Ray {
     Ray { origin, t_near: 0.0, direction: target - origin, t_far: 1.0 }
 }
 
-/// Returns the share of the light that arrives along the segment between two surface points. The normal is zero for a
-/// point that lies on no surface.
+/// Returns the share of the light that arrives along a segment: 0 if it is occluded or passes more than `most` sheets,
+/// else the transmittance of its sheets.
 #[inline]
-pub fn between(world: &World, a: Vec3, a_normal: Vec3, b: Vec3, b_normal: Vec3) -> Rgb {
-    arriving(world, &segment(a, a_normal, b, b_normal))
-}
-
-/// Returns the share of the light that arrives along a segment: 0 if it is occluded, else the transmittance of its
-/// sheets.
-#[inline]
-pub fn arriving(world: &World, segment: &Ray) -> Rgb {
-    if world.accel.occluded(segment) { Rgb::ZERO } else { world.transmittance(segment) }
+pub fn arriving(world: &World, segment: &Ray, most: u32) -> Rgb {
+    if world.accel.occluded(segment) { Rgb::ZERO } else { world.transmittance_of(segment, most) }
 }
