@@ -35,7 +35,7 @@ fn facts(loaded: &Loaded) -> Value {
         "hash": format!("{:016x}", loaded.hash),
         "resolution": loaded.cameras.resolution,
         "cameras": loaded.camera_names,
-        "frames": loaded.cameras.path.len(),
+        "frames": frames,
         "frame_range": (frames > 0).then_some([1, frames]),
         "max_depth": loaded.scene.max_depth,
         "box": bounds(&loaded.scene),

@@ -51,6 +51,13 @@ pub struct ReadingArgs {
     /// Value of the parameter `$NAME` of a Mitsuba scene, which replaces its `<default>`. May be repeated
     #[arg(short = 'D', long = "define", value_name = "NAME=VALUE", value_parser = definition)]
     define: Vec<(String, String)>,
+    /// Units of the lamps of a glTF model, candela or lux, that count for 1 W/sr or 1 W/m² [default: as its exporter
+    /// writes them]
+    #[arg(long, value_name = "N", value_parser = lumens)]
+    lumens_per_watt: Option<f32>,
+    /// Render glass of a glTF model without a volume as thin walls, even if Blender wrote a closed mesh
+    #[arg(long)]
+    thin_glass: bool,
     /// Number of triangles up to which instances are copied. Copies are traced faster, and instances take less memory
     /// [default: 1000000]
     #[arg(long, value_name = "TRIANGLES")]
@@ -102,6 +109,8 @@ impl ReadingArgs {
             },
             viewpoint: Viewpoint { from: self.look_from, at: self.look_at, fov: self.fov, around },
             most_copied: self.max_copied,
+            lumens_per_watt: self.lumens_per_watt,
+            thin_glass: self.thin_glass,
             up: self.up.map(|axis| match axis {
                 UpAxisName::Y => UpAxis::Y,
                 UpAxisName::Z => UpAxis::Z,
@@ -159,6 +168,11 @@ fn elevation(text: &str) -> Result<f64, String> {
     angle.ok_or_else(|| "expected an angle from -90 to 90 degrees".to_owned())
 }
 
+fn lumens(text: &str) -> Result<f32, String> {
+    let found = number(text).map(|number| number as f32).filter(|lumens| lumens.is_normal() && *lumens > 0.0);
+    found.ok_or_else(|| "expected a number above 0".to_owned())
+}
+
 fn point(text: &str) -> Result<DVec3, String> {
     let numbers: Option<Vec<f64>> = text.split(',').map(number).collect();
     match numbers.as_deref() {
@@ -191,6 +205,8 @@ mod tests {
         assert_eq!(found.lighting.environment, Some(EnvironmentChoice::Sky([10.0, 20.0])));
         assert_eq!((found.lighting.rotation, found.up), (90.0, Some(UpAxis::Z)));
         assert_eq!(found.viewpoint.from, Some(DVec3::new(-1.0, 2.0, 3.0)));
+        let found = options("--lumens-per-watt 12.5 --thin-glass").unwrap();
+        assert_eq!((found.lumens_per_watt, found.thin_glass), (Some(12.5), true));
         assert_eq!(options("--azimuth=-45").unwrap().viewpoint.around, Some([-45.0, 20.0]));
         assert!(options("--background none").unwrap().lighting.hides_background);
         assert_eq!(options("").unwrap(), LoadOptions::default());
@@ -205,6 +221,7 @@ mod tests {
             "--azimuth 1 --look-from 1,2,3",
             "--elevation 91",
             "--fov x",
+            "--lumens-per-watt 0",
             "--up x",
         ] {
             assert!(options(bad).is_err(), "{bad}");

@@ -106,6 +106,9 @@ pub fn load(path: &Path, options: &LoadOptions) -> Result<Loaded, SceneError> {
     let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
     let mut log = Log::new(options.strict);
     let is_model = !matches!(extension.as_str(), "toml" | "xml");
+    if !matches!(extension.as_str(), "glb" | "gltf") {
+        options.no_model(path)?;
+    }
     let mut plan = match extension.as_str() {
         "toml" => {
             options.no_choice(path)?;

@@ -23,6 +23,10 @@ pub struct LoadOptions {
     pub viewpoint: Viewpoint,
     /// Number of triangles up to which instances are copies; `None` for the default.
     pub most_copied: Option<u64>,
+    /// Units of a glTF model's lamps that count for one watt; `None` for the units of its exporter.
+    pub lumens_per_watt: Option<f32>,
+    /// True if glass without a volume is thin, even if Blender wrote a closed mesh.
+    pub thin_glass: bool,
     /// Upward axis for light and camera; `None` stands for z for STL files, and for y otherwise.
     pub up: Option<UpAxis>,
 }
@@ -37,6 +41,17 @@ impl LoadOptions {
         Err(Location::file(path).no_camera(camera, remedy))
     }
 
+    /// Rejects what only a glTF model has.
+    pub(crate) fn no_model(&self, path: &Path) -> Result<(), SceneError> {
+        let what = match (self.lumens_per_watt, self.thin_glass) {
+            (Some(_), _) => "--lumens-per-watt",
+            (None, true) => "--thin-glass",
+            (None, false) => return Ok(()),
+        };
+        let remedy = format!("leave {what} out; a mesh in a TOML scene has a key for it");
+        Err(Location::file(path).wrong(format!("{what} is for glTF models"), remedy))
+    }
+
     /// Rejects parameters, for formats without parameters.
     pub(crate) fn no_parameters(&self, path: &Path) -> Result<(), SceneError> {
         let Some((name, _)) = self.parameters.first() else { return Ok(()) };
@@ -46,12 +61,17 @@ impl LoadOptions {
 
     /// Returns the hash of a scene with these options; `files` is the hash of its files.
     pub(crate) fn hash(&self, files: u64) -> u64 {
-        let LoadOptions { strict, frame, camera, parameters, lighting, viewpoint, most_copied, up } = self;
+        let LoadOptions { strict, frame, camera, parameters, lighting, viewpoint, most_copied, up, .. } =
+            self;
         // The frame counts only if a model takes its pose.
         if *self == (LoadOptions { strict: *strict, frame: *frame, ..LoadOptions::default() }) {
             return files;
         }
         let files = most_copied.map_or(files, |most| fnv1a(format!("{files} {most}").as_bytes()));
+        let files = match (self.lumens_per_watt, self.thin_glass) {
+            (None, false) => files,
+            units_and_glass => fnv1a(format!("{files} {units_and_glass:?}").as_bytes()),
+        };
         if *lighting == Lighting::default() && *viewpoint == Viewpoint::default() && up.is_none() {
             return fnv1a(format!("{files} {camera:?} {parameters:?}").as_bytes());
         }

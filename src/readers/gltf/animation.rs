@@ -6,6 +6,7 @@ use crate::error::SceneError;
 use glam::{DQuat, DVec3};
 use gltf_json::animation::{Animation, Channel, Interpolation, Property};
 use gltf_json::validation::Checked;
+use std::collections::BTreeSet;
 
 /// One animated property of a node.
 pub(super) struct Track {
@@ -21,9 +22,9 @@ pub(super) struct Track {
 }
 
 impl Track {
-    /// Returns the first and last time of the keys, in seconds.
-    pub fn span(&self) -> [f32; 2] {
-        [self.times[0], self.times[self.times.len() - 1]]
+    /// Returns the time of the last key, in seconds.
+    fn end(&self) -> f64 {
+        self.times.last().map_or(0.0, |time| f64::from(*time))
     }
 
     /// True if the track moves its node.
@@ -88,7 +89,7 @@ impl Track {
 
     fn rotation(&self, time: f64) -> DQuat {
         let key = |i: usize| match *self.value(i) {
-            [x, y, z, w] => [x, y, z, w],
+            [x, y, z, w] => [x, y, z, w].map(f64::from),
             _ => [0.0; 4],
         };
         match self.at(time) {
@@ -97,7 +98,7 @@ impl Track {
             At::Spline { points, weights } => {
                 let mut sum = [0.0; 4];
                 for (i, weight) in points.into_iter().zip(weights) {
-                    sum.iter_mut().zip(key(i)).for_each(|(sum, v)| *sum += v * weight as f32);
+                    sum.iter_mut().zip(key(i)).for_each(|(sum, v)| *sum += v * weight);
                 }
                 quaternion(sum)
             }
@@ -136,14 +137,54 @@ enum At {
     Spline { points: [usize; 4], weights: [f64; 4] },
 }
 
-/// Reads the tracks of an animation that move the wanted nodes.
-pub(super) fn tracks(
-    document: &GltfFile,
-    animation: &Animation,
-    is_wanted: impl Fn(usize) -> bool,
-) -> Result<Vec<Track>, SceneError> {
-    let channels = animation.channels.iter().filter(|channel| is_wanted(channel.target.node.value()));
-    channels.map(|channel| track(document, animation, channel)).collect()
+/// Animations that play together, from the time 0 on. The default is none.
+#[derive(Default)]
+pub(super) struct Clip {
+    tracks: Vec<Track>,
+    /// Names of the animations that do not play, because others move what they move.
+    pub left_out: Vec<String>,
+}
+
+impl Clip {
+    /// Reads the animations of a file.
+    pub fn of(document: &GltfFile) -> Result<Clip, SceneError> {
+        let (mut clip, mut targets) = (Clip::default(), BTreeSet::new());
+        for animation in &document.root.animations {
+            let of_channel = |channel: &Channel| {
+                let property = match channel.target.path {
+                    Checked::Valid(property) => Some(property as u8),
+                    Checked::Invalid => None,
+                };
+                (channel.target.node.value(), property)
+            };
+            let own: BTreeSet<_> = animation.channels.iter().map(of_channel).collect();
+            if !own.is_disjoint(&targets) {
+                clip.left_out.push(animation.name.clone().unwrap_or_default());
+                continue;
+            }
+            for channel in &animation.channels {
+                clip.tracks.push(track(document, animation, channel)?);
+            }
+            targets.extend(own);
+        }
+        Ok(clip)
+    }
+
+    /// Returns the tracks of a node.
+    pub fn of_node(&self, node: usize) -> impl Iterator<Item = &Track> {
+        self.tracks.iter().filter(move |track| track.node == node)
+    }
+
+    /// Returns all tracks.
+    pub fn tracks(&self) -> &[Track] {
+        &self.tracks
+    }
+
+    /// Returns the number of frames from the time 0 to the last key of all; 0 if nothing plays.
+    pub fn frames(&self, fps: f64) -> usize {
+        let end = self.tracks.iter().map(Track::end).fold(0.0, f64::max);
+        if self.tracks.is_empty() { 0 } else { (end * fps).round() as usize + 1 }
+    }
 }
 
 fn track(document: &GltfFile, animation: &Animation, channel: &Channel) -> Result<Track, SceneError> {
@@ -171,6 +212,9 @@ fn track(document: &GltfFile, animation: &Animation, channel: &Channel) -> Resul
     };
     if times.is_empty() || values.len() != each * times.len() * width {
         return Err(wrong(&format!("has {} keys and {} values", times.len(), values.len() / width.max(1))));
+    }
+    if !values.iter().all(|value| value.is_finite()) {
+        return Err(wrong("has values that are no numbers"));
     }
     if !times.iter().all(|time| time.is_finite()) || times.windows(2).any(|pair| !(pair[0] < pair[1])) {
         return Err(wrong("has keys that are out of order"));

@@ -1,14 +1,14 @@
 //! Cameras, and their animation as a camera path.
 
-use super::animation::{self, Track};
+use super::animation::Track;
 use super::document::GltfFile;
-use super::nodes::{Local, Placed};
+use super::nodes::{Place, Placed, unflattened};
+use super::pose::Pose;
 use super::report::Findings;
 use crate::draft::{DEFAULT_RESOLUTION, DraftCamera, DraftView, Shot};
 use crate::error::SceneError;
 use base::math::{right_of, unit};
 use glam::{DMat4, DVec3};
-use gltf_json::animation::{Channel, Property};
 use gltf_json::camera::{Camera, Type};
 use gltf_json::validation::Checked;
 use scene::{MAX_FRAMES, Projection};
@@ -20,14 +20,14 @@ pub(crate) const FRAMES_PER_SECOND: f64 = 24.0;
 pub(super) struct Viewer<'a> {
     pub document: &'a GltfFile,
     pub tree: &'a [Placed],
+    pub pose: &'a Pose,
     pub to_world: DMat4,
     pub fps: f64,
-    /// True if the pose of the model is that of a time.
-    pub is_posed: bool,
 }
 
 impl Viewer<'_> {
-    /// Returns the shot of the file's first camera, or of the one that `wanted` names or numbers from 1.
+    /// Returns the shot of the file's first camera that is not hidden, or of the one that `wanted` names or numbers
+    /// from 1.
     ///
     /// Returns `None` for files without cameras.
     pub fn shot(&self, wanted: Option<&str>, report: &mut Findings) -> Result<Option<Shot>, SceneError> {
@@ -42,7 +42,7 @@ impl Viewer<'_> {
             cameras.iter().enumerate().map(named).collect::<Vec<_>>().join(", ")
         };
         let found = match wanted {
-            None => cameras.first(),
+            None => cameras.iter().find(|(at, _)| !self.tree[*at].place.is_hidden()).or(cameras.first()),
             Some(wanted) => {
                 let number = wanted.parse::<usize>().ok().and_then(|number| number.checked_sub(1));
                 let by_name = cameras
@@ -59,18 +59,23 @@ impl Viewer<'_> {
                 Some(found.ok_or_else(unknown)?)
             }
         };
-        let Some(&(at, camera)) = found else {
-            self.report_still(|_| false, report);
-            return Ok(None);
-        };
+        let Some(&(at, camera)) = found else { return Ok(None) };
+        if self.tree[at].place.is_hidden() {
+            let what = "a camera has a scale of 0";
+            report.note(what, "it is used all the same: scales do not change cameras", name(at));
+        }
         if cameras.len() > 1 && wanted.is_none() {
             let what = format!("there are {} cameras: {}", cameras.len(), names(&cameras));
-            report.note(&what, "the first is used; choose another with --camera", "");
+            let fallback = match cameras.first().is_some_and(|(first, _)| *first == at) {
+                true => "the first is used; choose another with --camera",
+                false => "the first without a scale of 0 is used; choose another with --camera",
+            };
+            report.note(&what, fallback, "");
         }
         let lens = self.lens(at, camera)?;
         let resolution = lens.resolution();
-        let still = self.camera(&self.tree[at].to_file, &lens, resolution)?;
-        let path = self.path(at, &lens, resolution, report)?;
+        let still = self.camera(&self.tree[at].place, &lens, resolution)?;
+        let path = self.path(at, &lens, resolution)?;
         let names = cameras.iter().map(|(at, _)| name(*at).to_owned()).collect();
         Ok(Some(Shot { camera: still, names, fits: false, path, resolution, crop: None }))
     }
@@ -84,7 +89,7 @@ impl Viewer<'_> {
                 "" => camera.name.as_deref().unwrap_or_default(),
                 name => name,
             };
-            let camera = self.camera(&self.tree[at].to_file, &lens, resolution)?;
+            let camera = self.camera(&self.tree[at].place, &lens, resolution)?;
             Ok(DraftView { name: name.to_owned(), is_path: false, camera, resolution: Some(resolution) })
         };
         Ok(self.cameras()?.into_iter().map(view).collect())
@@ -108,87 +113,37 @@ impl Viewer<'_> {
             .ok_or_else(|| self.document.wrong(format!("the camera {} has no lens", self.name(at))))
     }
 
-    /// Returns one camera per frame, if an animation moves the camera.
-    fn path(
-        &self,
-        at: usize,
-        lens: &Lens,
-        resolution: [u32; 2],
-        report: &mut Findings,
-    ) -> Result<Vec<DraftCamera>, SceneError> {
-        let chain: Vec<usize> = std::iter::successors(Some(at), |&at| self.tree[at].parent).collect();
-        let is_on_the_way = |node: usize| chain.iter().any(|&at| self.tree[at].node == node);
-        self.report_still(is_on_the_way, report);
-        let mut of_camera: Option<Vec<Track>> = None;
-        for animation in &self.document.root.animations {
-            let name = animation.name.as_deref().unwrap_or_default();
-            let mut tracks = animation::tracks(self.document, animation, is_on_the_way)?;
-            tracks.retain(Track::moves);
-            if !self.is_posed && tracks.len() < animation.channels.len() {
-                let what = "the animation of anything but the camera is not supported";
-                report.lacks(
-                    what,
-                    "it stands still; --frame chooses its pose, or `time` of a mesh in a TOML scene",
-                    name,
-                );
-            }
-            match (tracks.is_empty(), &of_camera) {
-                (true, _) => {}
-                (false, None) => of_camera = Some(tracks),
-                (false, Some(_)) => {
-                    report.lacks("a second animation of the camera", "the first is used", name)
-                }
-            }
+    /// Returns one camera per frame of the animation, if the animation moves the camera.
+    fn path(&self, at: usize, lens: &Lens, resolution: [u32; 2]) -> Result<Vec<DraftCamera>, SceneError> {
+        let chain: Vec<usize> = self.chain(at).collect();
+        let moves = |&at: &usize| self.pose.clip.of_node(self.tree[at].node).any(Track::moves);
+        if !chain.iter().any(moves) {
+            return Ok(Vec::new());
         }
-        let Some(tracks) = of_camera else { return Ok(Vec::new()) };
-        let start = tracks.iter().map(|track| track.span()[0]).fold(f32::INFINITY, f32::min);
-        let end = tracks.iter().map(|track| track.span()[1]).fold(f32::NEG_INFINITY, f32::max);
-        let frames = (((f64::from(end) - f64::from(start)) * self.fps).round() + 1.0) as usize;
+        let frames = self.pose.clip.frames(self.fps);
         if frames > MAX_FRAMES {
             return Err(self.document.wrong(format!("the camera's animation takes {frames} frames")));
         }
-        let frame = |i: usize| {
-            let time = f64::from(start) + i as f64 / self.fps;
-            self.camera(&self.moved(&chain, &tracks, time), lens, resolution)
-        };
+        let frame = |i: usize| self.camera(&self.moved(&chain, i as f64 / self.fps), lens, resolution);
         (0..frames).map(frame).collect()
     }
 
-    /// Reports animations that move anything but the camera, which nodes for which `is_on_the_way` holds carry.
-    fn report_still(&self, is_on_the_way: impl Fn(usize) -> bool, report: &mut Findings) {
-        let is_still = |channel: &Channel| {
-            let moves = !matches!(channel.target.path, Checked::Valid(Property::MorphTargetWeights));
-            !(moves && is_on_the_way(channel.target.node.value()))
-        };
-        // The first animation of a model that is posed is read.
-        for animation in self.document.root.animations.iter().skip(usize::from(self.is_posed)) {
-            if animation.channels.iter().any(is_still) {
-                let name = animation.name.as_deref().unwrap_or_default();
-                let what = "the animation of anything but the camera is not supported";
-                report.lacks(
-                    what,
-                    "it stands still; --frame chooses its pose, or `time` of a mesh in a TOML scene",
-                    name,
-                );
-            }
-        }
+    /// Returns a node of the tree, and those above it.
+    fn chain(&self, at: usize) -> impl Iterator<Item = usize> {
+        std::iter::successors(Some(at), |&at| self.tree[at].parent)
     }
 
-    /// Returns the transform of the first node in a chain of parents to the file's coordinates, at a time in seconds.
-    fn moved(&self, chain: &[usize], tracks: &[Track], time: f64) -> DMat4 {
-        chain.iter().rev().fold(DMat4::IDENTITY, |to_file, &at| {
-            let node = self.tree[at].node;
-            let mut local = Local::of(&self.document.root.nodes[node]);
-            tracks.iter().filter(|track| track.node == node).for_each(|track| track.apply(&mut local, time));
-            to_file * local.matrix()
-        })
+    /// Returns the place of the first node in a chain of parents at a time in seconds.
+    fn moved(&self, chain: &[usize], time: f64) -> Place {
+        let local = |at: usize| self.pose.local_at(self.document, self.tree[at].node, Some(time));
+        chain.iter().rev().fold(Place::default(), |place, &at| place.child(&local(at)))
     }
 
-    fn camera(&self, to_file: &DMat4, lens: &Lens, resolution: [u32; 2]) -> Result<DraftCamera, SceneError> {
-        let to_world = self.to_world * *to_file;
-        let forward = unit(to_world.transform_vector3(DVec3::NEG_Z));
-        let right = forward.and_then(|forward| right_of(forward, to_world.transform_vector3(DVec3::Y)));
-        let origin = to_world.transform_point3(DVec3::ZERO);
+    fn camera(&self, place: &Place, lens: &Lens, resolution: [u32; 2]) -> Result<DraftCamera, SceneError> {
+        let axes = unflattened(self.to_world) * place.axes;
+        let forward = unit(axes.transform_vector3(DVec3::NEG_Z));
+        let right = forward.and_then(|forward| right_of(forward, axes.transform_vector3(DVec3::Y)));
+        let origin = (self.to_world * place.to_file).transform_point3(DVec3::ZERO);
         let (Some(forward), Some(right), true) = (forward, right, origin.is_finite()) else {
             return Err(self.document.wrong("the camera looks nowhere".into()));
         };

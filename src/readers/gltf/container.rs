@@ -1,5 +1,8 @@
 //! The container: JSON and binary chunk of a `.gltf` or `.glb` file.
 
+use super::json;
+use super::nodes::Local;
+use super::statements::{self, Unread};
 use crate::error::{Location, SceneError};
 use gltf_json::Root;
 use serde_json::Value;
@@ -34,29 +37,57 @@ impl<'a> Container<'a> {
     }
 
     /// Parses the JSON of glTF 2.0.
-    pub fn root(&self, place: &Location) -> Result<Root, SceneError> {
-        let parsed =
-            serde_json::from_slice(self.json).or_else(|error| without_pointers(self.json).ok_or(error));
+    pub fn description(&self, place: &Location) -> Result<Description, SceneError> {
+        // What nests too deeply for this is read without repairs.
+        let mut value: Value = serde_json::from_slice(self.json).unwrap_or_default();
+        let is_old = is_old(&value);
+        let is_repaired = json::repair(&mut value);
+        let unread = statements::unread(&value);
+        let is_repaired = json::drop_pointers(&mut value) || is_repaired;
+        let nodes = match is_repaired {
+            true => value.get("nodes").cloned(),
+            false => value.get_mut("nodes").map(Value::take),
+        };
+        let nodes = nodes.unwrap_or_default();
+        let parsed = match is_repaired {
+            true => serde_json::from_value(value),
+            false => serde_json::from_slice(self.json),
+        };
         let root: Root = parsed.map_err(|error| {
-            if is_old(self.json) {
+            if is_old {
                 return place.wrong("this is a file of glTF 1.0", CONVERT);
             }
-            let place = match self.is_text {
+            let place = match self.is_text && error.line() > 0 {
                 true => Location::line(&place.path, error.line() as u32),
                 false => place.clone(),
             };
             place.malformed(error.to_string())
         })?;
-        let needed = root.asset.min_version.as_ref().unwrap_or(&root.asset.version);
-        let version = needed.split_once('.').and_then(|(major, minor)| {
-            let [major, minor] = [major, minor].map(|part| part.parse::<u32>().ok());
-            Some((major?, minor?))
-        });
-        match version {
-            Some((2, minor)) if minor == 0 || root.asset.min_version.is_none() => Ok(root),
-            Some((0 | 1, _)) => Err(place.wrong(format!("this is a file of glTF {needed}"), CONVERT)),
-            _ => Err(place.wrong(format!("the file asks for glTF {needed}"), "export it as glTF 2.0")),
-        }
+        check_version(&root, place)?;
+        let local = |(i, node)| Local::of(node, nodes.get(i).unwrap_or(&Value::Null));
+        let locals = root.nodes.iter().enumerate().map(local).collect();
+        Ok(Description { root, locals, unread })
+    }
+}
+
+/// Content of a file's JSON.
+pub(super) struct Description {
+    pub root: Root,
+    /// Transforms of the nodes at rest.
+    pub locals: Vec<Local>,
+    pub unread: Unread,
+}
+
+fn check_version(root: &Root, place: &Location) -> Result<(), SceneError> {
+    let needed = root.asset.min_version.as_ref().unwrap_or(&root.asset.version);
+    let version = needed.split_once('.').and_then(|(major, minor)| {
+        let [major, minor] = [major, minor].map(|part| part.parse::<u32>().ok());
+        Some((major?, minor?))
+    });
+    match version {
+        Some((2, minor)) if minor == 0 || root.asset.min_version.is_none() => Ok(()),
+        Some((0 | 1, _)) => Err(place.wrong(format!("this is a file of glTF {needed}"), CONVERT)),
+        _ => Err(place.wrong(format!("the file asks for glTF {needed}"), "export it as glTF 2.0")),
     }
 }
 
@@ -93,19 +124,8 @@ fn chunks<'a>(bytes: &'a [u8], place: &Location) -> Result<Container<'a>, SceneE
     Ok(Container { json: &json[..end], binary, is_text: false })
 }
 
-/// Parses JSON after the channels of animations that move no node are taken out; `None` if there are none.
-fn without_pointers(json: &[u8]) -> Option<Root> {
-    let mut value: Value = serde_json::from_slice(json).ok()?;
-    for animation in value.get_mut("animations")?.as_array_mut()? {
-        let channels = animation.get_mut("channels")?.as_array_mut()?;
-        channels.retain(|channel| channel.pointer("/target/node").is_some());
-    }
-    serde_json::from_slice(&serde_json::to_vec(&value).ok()?).ok()
-}
-
 /// True if JSON is that of glTF 1.0, whose lists are objects.
-fn is_old(json: &[u8]) -> bool {
-    let Ok(value) = serde_json::from_slice::<Value>(json) else { return false };
+fn is_old(value: &Value) -> bool {
     let version = value.pointer("/asset/version");
     let is_old = match version {
         Some(Value::String(version)) => version.starts_with("1.") || version == "1",

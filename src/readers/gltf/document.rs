@@ -1,13 +1,13 @@
 //! A file with its buffers, and the look-up of its objects.
 
-use super::container::Container;
+use super::container::{Container, Description};
 use super::draco;
 use super::meshopt;
+use super::nodes::Local;
 use super::statements;
+use super::uri::{self, Resolved};
 use crate::error::{Location, SceneError};
 use crate::file::{fnv1a, folder_of, read_file};
-use base64::Engine;
-use base64::engine::general_purpose::STANDARD;
 use gltf_json::accessor::Accessor;
 use gltf_json::{Index, Root, buffer, root::Get};
 use std::collections::BTreeMap;
@@ -37,6 +37,8 @@ const KNOWN: [&str; 17] = [
 /// A file with its buffers.
 pub(super) struct GltfFile {
     pub root: Root,
+    /// Transforms of the nodes at rest.
+    pub locals: Vec<Local>,
     /// Location of the file, for messages.
     pub place: Location,
     /// Folder to which file names are relative.
@@ -79,13 +81,14 @@ impl GltfFile {
     /// Returns the description in the bytes of a file, without its buffers.
     fn described(path: &Path, bytes: &[u8], container: &Container) -> Result<GltfFile, SceneError> {
         let place = Location::file(path);
-        let root = container.root(&place)?;
+        let Description { root, locals, unread } = container.description(&place)?;
         check_extensions(&root, &place)?;
         Ok(GltfFile {
             root,
+            locals,
             folder: folder_of(path).to_owned(),
             sources: vec![(path.to_owned(), fnv1a(bytes))],
-            unread: statements::unread(container.json),
+            unread,
             buffers: Vec::new(),
             views: BTreeMap::new(),
             accessors: BTreeMap::new(),
@@ -122,12 +125,7 @@ impl GltfFile {
 
     /// Returns the bytes in a data URI, or the path of the file that a URI names.
     pub fn resolve(&self, uri: &str) -> Result<Resolved, SceneError> {
-        let Some(data) = uri.strip_prefix("data:") else {
-            return Ok(Resolved::File(self.folder.join(percent_decoded(uri))));
-        };
-        let encoded = data.split_once(";base64,").map(|(_, encoded)| encoded);
-        let bytes = encoded.and_then(|encoded| STANDARD.decode(encoded).ok());
-        Ok(Resolved::Bytes(bytes.ok_or_else(|| self.wrong("a data URI is not in base64".into()))?))
+        uri::resolve(uri, &self.folder).ok_or_else(|| self.wrong("a data URI is not in base64".into()))
     }
 
     /// Returns the error of damaged content.
@@ -161,12 +159,6 @@ impl GltfFile {
     }
 }
 
-/// Content of a URI.
-pub(super) enum Resolved {
-    Bytes(Vec<u8>),
-    File(PathBuf),
-}
-
 fn check_extensions(root: &Root, place: &Location) -> Result<(), SceneError> {
     let unknown = root.extensions_required.iter().find(|name| !KNOWN.contains(&name.as_str()));
     let Some(name) = unknown else { return Ok(()) };
@@ -184,23 +176,4 @@ pub(super) fn unread_extensions(document: &GltfFile) -> impl Iterator<Item = &St
     let is_unread =
         |name: &&String| !KNOWN.contains(&name.as_str()) && !document.unread.extensions.contains(*name);
     document.root.extensions_used.iter().filter(is_unread)
-}
-
-fn percent_decoded(uri: &str) -> String {
-    let (bytes, mut decoded) = (uri.as_bytes(), Vec::new());
-    let mut at = 0;
-    while at < bytes.len() {
-        let hex = bytes.get(at + 1..at + 3).and_then(|hex| std::str::from_utf8(hex).ok());
-        match hex.and_then(|hex| u8::from_str_radix(hex, 16).ok()) {
-            Some(byte) if bytes[at] == b'%' => {
-                decoded.push(byte);
-                at += 3;
-            }
-            _ => {
-                decoded.push(bytes[at]);
-                at += 1;
-            }
-        }
-    }
-    String::from_utf8_lossy(&decoded).into_owned()
 }

@@ -7,7 +7,7 @@ use super::light;
 use super::mesh;
 use super::mesh::VertexColours;
 use super::morph;
-use super::nodes::Placed;
+use super::nodes::{Place, Placed, unflattened};
 use super::pose::Pose;
 use super::report::Findings;
 use super::skin;
@@ -16,7 +16,7 @@ use crate::error::SceneError;
 use crate::mesh::{Normals, Placement, RawMesh};
 use crate::plan::{Appearance, Contents, ImageSource, MaterialPlan, MeshPlan, MeshSource};
 use crate::selection::PartSelection;
-use glam::{DMat3, DMat4};
+use glam::DMat4;
 use gltf_json::Index;
 use gltf_json::mesh::Mesh;
 use scene::{Emission, MaterialId, Relief};
@@ -35,11 +35,15 @@ pub(crate) struct ImportOptions {
     pub emission: Option<Emission>,
     /// Units of the model's lights per unit of the renderer; `None` for the units of the exporter.
     pub lumens_per_watt: Option<f32>,
-    /// Frames per second of the camera's animation.
+    /// True if glass without a volume is thin, even if Blender wrote a closed mesh.
+    pub thin_glass: bool,
+    /// True if the model is the scene itself, whose animation `walk` renders.
+    pub is_scene: bool,
+    /// Frames per second of the animation.
     pub fps: f64,
     /// Time in seconds whose pose the model takes; `None` for its pose at rest.
     pub time: Option<f64>,
-    /// Frame of the first animation, counted from 1, whose pose the model takes if there is no time.
+    /// Frame of the animation, counted from 1, whose pose the model takes if there is no time.
     pub frame: Option<usize>,
     /// Name of the camera, or number from 1.
     pub camera: Option<String>,
@@ -56,6 +60,8 @@ impl Default for ImportOptions {
             material: None,
             emission: None,
             lumens_per_watt: None,
+            thin_glass: false,
+            is_scene: false,
             fps: FRAMES_PER_SECOND,
             time: None,
             frame: None,
@@ -90,8 +96,9 @@ pub(super) struct Importer<'a> {
     pub options: &'a ImportOptions,
     pub contents: &'a mut Contents,
     pub report: Findings,
-    /// Materials read so far, by index and by the colours of vertices that they are multiplied with.
-    pub surfaces: BTreeMap<(Option<usize>, VertexColours), MaterialUse>,
+    /// Materials read so far, by index, by the colours of vertices that they are multiplied with, and by whether glass
+    /// without a volume is solid.
+    pub surfaces: BTreeMap<(Option<usize>, VertexColours, bool), MaterialUse>,
     pub images: BTreeMap<usize, ImageSource>,
     /// Primitives read so far, by index of the mesh.
     pub meshes: BTreeMap<usize, Vec<Part>>,
@@ -105,17 +112,20 @@ impl Importer<'_> {
         let document = self.document;
         let node = &document.root.nodes[placed.node];
         let name = node.name.clone().unwrap_or_else(|| format!("node {}", placed.node));
-        if !placed.to_file.is_finite() {
+        if !placed.place.to_file.is_finite() {
             return Err(document.wrong(format!("the transform of {name} is not finite")));
         }
-        let to_world = self.options.to_world * placed.to_file;
+        let to_world = self.options.to_world * placed.place.to_file;
         let light = node.extensions.as_ref().and_then(|extensions| extensions.khr_lights_punctual.as_ref());
         if let (Some(_), Some(_)) = (light, self.options.group) {
             self.report.lacks("lights of a model in a group are not supported", "they are left out", &name);
         } else if let Some(light) = light {
             let light = document.get(light.light, "light")?;
-            let lumens = self.options.lumens_per_watt.unwrap_or(light::lumens_per_watt(document));
-            let light = light::read(light, &name, &to_world, lumens, document, &mut self.report)?;
+            let given = self.options.lumens_per_watt;
+            let lumens = light::lumens_per_watt(light, given, document, &name, &mut self.report);
+            let place =
+                Place { to_file: to_world, axes: unflattened(self.options.to_world) * placed.place.axes };
+            let light = light::read(light, &name, &place, lumens, document, &mut self.report)?;
             self.contents.lights.push(light);
         }
         if let Some(mesh) = node.mesh {
@@ -180,7 +190,7 @@ impl Importer<'_> {
 
     /// Shows a mesh that may be seen at several places.
     fn show(&mut self, index: Index<Mesh>, name: &str, to_world: DMat4) -> Result<(), SceneError> {
-        if self.options.group.is_some() || DMat3::from_mat4(to_world).determinant() == 0.0 {
+        if self.options.group.is_some() {
             for Part { raw, appearance, .. } in self.primitives(index)? {
                 self.add(self.plan(raw, appearance, name, to_world))?;
             }
@@ -241,7 +251,9 @@ impl Importer<'_> {
         let mut primitives = Vec::new();
         for (i, primitive) in mesh.primitives.iter().enumerate() {
             let what = primitive_name(mesh, index, i);
-            let surface = self.surface(primitive.material, VertexColours::of(document, primitive)?)?;
+            let is_solid = self.is_solid(primitive, mesh, &what)?;
+            let surface =
+                self.surface(primitive.material, VertexColours::of(document, primitive)?, is_solid)?;
             let has_tangents = self.has_direction(surface.appearance);
             let raw = mesh::read(document, primitive, surface.uv_set, has_tangents, &what, &mut self.report)?;
             let part = |raw| Part { primitive: i, raw: Arc::new(raw), appearance: surface.appearance };

@@ -46,7 +46,8 @@ pub(super) fn places(document: &GltfFile, node: usize) -> Result<Option<Vec<DMat
         all.as_ref().map_or(default, |all| DVec3::from(all[i].map(f64::from)))
     };
     let place = |i: usize| {
-        let rotation = quaternion(rotations.as_ref().map_or([0.0, 0.0, 0.0, 1.0], |all| all[i]));
+        let rotation = rotations.as_ref().map_or([0.0, 0.0, 0.0, 1.0], |all| all[i]);
+        let rotation = quaternion(rotation.map(f64::from));
         let (scale, translation) = (vector(&scales, i, DVec3::ONE), vector(&translations, i, DVec3::ZERO));
         DMat4::from_scale_rotation_translation(scale, rotation, translation)
     };

@@ -2,40 +2,71 @@
 //!
 //! Units: the extension counts in candela (point, spot) and lux (directional), and surface radiance in cd/m². These
 //! numbers are read as W/sr, W/m² and W/(sr m²), so proportions hold. Blender's exporter converts the watts of lights,
-//! but not of surfaces, by 683 lm/W; its lights are divided by that factor.
+//! but not of surfaces, by 683 lm/W; its lights are divided by that factor. Before version 3.4 it wrote the watts of
+//! points and spots, and the irradiance of suns. Their intensity is the watts over 4π.
 
 use super::document::GltfFile;
+use super::generator::Generator;
+use super::nodes::Place;
 use super::report::Findings;
 use crate::error::SceneError;
 use base::math::{Rgb, unit};
-use glam::{DMat4, DVec3, Vec3};
+use glam::{DMat3, DVec3, Vec3};
 use gltf_json::extensions::scene::khr_lights_punctual::{Light, Type};
 use gltf_json::validation::Checked;
 use scene::DeltaLight;
 
-/// Lumens per watt that Blender's exporter writes for lights.
+/// Lumens per watt that Blender's exporter writes for lights since version 3.4.
 const BLENDER_LUMENS_PER_WATT: f32 = 683.0;
 
-/// Returns the units of the file's lights per unit of the renderer.
-pub(super) fn lumens_per_watt(document: &GltfFile) -> f32 {
-    let generator = document.root.asset.generator.as_deref().unwrap_or_default();
-    if generator.contains("Blender") { BLENDER_LUMENS_PER_WATT } else { 1.0 }
+/// Returns the units of a light of the file per unit of the renderer: those that the user gives, or those of the
+/// program that wrote the file. `name` is that of the light.
+pub(super) fn lumens_per_watt(
+    light: &Light,
+    given: Option<f32>,
+    document: &GltfFile,
+    name: &str,
+    report: &mut Findings,
+) -> f32 {
+    if let Some(given) = given {
+        return given;
+    }
+    match Generator::of(document) {
+        Generator::BlenderWithWatts => match light.type_ {
+            Checked::Valid(Type::Directional) => 1.0,
+            _ => 4.0 * std::f32::consts::PI,
+        },
+        Generator::Blender => {
+            let what = "lamps count as exported with the Lighting Mode Standard, 683 lumens per watt";
+            let remedy = "give --lumens-per-watt 1 if it was Unitless; if it was Raw, 12.57, and 1 for suns";
+            report.note(what, remedy, name);
+            BLENDER_LUMENS_PER_WATT
+        }
+        Generator::Other => {
+            let what = "a candela of lamps counts as 1 W/sr, and a lux as 1 W/m²";
+            report.note(what, "give --lumens-per-watt 683 if surfaces emit watts", name);
+            1.0
+        }
+    }
 }
 
-/// Returns the light of a node, and its world position.
+/// Returns the light of a node, and its position. Scales do not change it.
 pub(super) fn read(
     light: &Light,
     name: &str,
-    to_world: &DMat4,
+    place: &Place,
     lumens_per_watt: f32,
     document: &GltfFile,
     report: &mut Findings,
 ) -> Result<(DeltaLight, DVec3), SceneError> {
     let power = Rgb::from(light.color) * (light.intensity / lumens_per_watt);
-    let axis = unit(to_world.transform_vector3(DVec3::NEG_Z));
+    let axis = unit(place.axes.transform_vector3(DVec3::NEG_Z));
     let Some(direction) = axis.map(|axis| axis.as_vec3()) else {
         return Err(document.wrong(format!("{name} has no direction")));
     };
+    if DMat3::from_mat4(place.to_file).determinant() == 0.0 {
+        report.note("a lamp has a scale of 0", "it shines all the same: scales do not change lamps", name);
+    }
     if light.range.is_some_and(f32::is_finite) {
         report.note("the range of lights is not supported", "lights reach any distance", name);
     }
@@ -61,5 +92,5 @@ pub(super) fn read(
         }
         _ => return Err(document.wrong(format!("{name} has an unknown type"))),
     };
-    Ok((light, to_world.transform_point3(DVec3::ZERO)))
+    Ok((light, place.to_file.transform_point3(DVec3::ZERO)))
 }

@@ -1,7 +1,7 @@
 //! Conversion of metallic-roughness materials and their extensions to principled materials.
 //!
 //! Deviations:
-//! - A sheet that transmits (no thickness) is smooth, and transmits fully or not at all.
+//! - A sheet that transmits (no thickness, see `glass`) is smooth, and transmits fully or not at all.
 //! - A clear coat is that of the principled material, which reflects a quarter of the extension's coat.
 //! - Sheen is that of the principled material.
 
@@ -34,14 +34,16 @@ const ALPHA: Channel = Channel::One(3);
 impl Importer<'_> {
     /// Returns the material of a primitive; `None` stands for the default material.
     ///
-    /// Base colour and opacity are multiplied with `colours` of vertices.
+    /// Base colour and opacity are multiplied with `colours` of vertices. Glass without a volume is solid if
+    /// `is_solid`.
     pub(super) fn surface(
         &mut self,
         index: Option<Index<Source>>,
         colours: VertexColours,
+        is_solid: bool,
     ) -> Result<MaterialUse, SceneError> {
         let number = index.map(|index| index.value());
-        if let Some(surface) = self.surfaces.get(&(number, colours)) {
+        if let Some(surface) = self.surfaces.get(&(number, colours, is_solid)) {
             return Ok(*surface);
         }
         let document = self.document;
@@ -57,10 +59,10 @@ impl Importer<'_> {
         };
         let uv_set = self.uv_set(source, &name);
         let emission = self.emission(source, colours, &name)?;
-        let material = self.material(source, colours, &name)?;
+        let material = self.material(source, colours, is_solid, &name)?;
         let material = self.contents.add_material(material, document.place.clone());
         let surface = MaterialUse { appearance: Appearance { material, emission }, uv_set };
-        self.surfaces.insert((number, colours), surface);
+        self.surfaces.insert((number, colours, is_solid), surface);
         Ok(surface)
     }
 
@@ -101,7 +103,7 @@ impl Importer<'_> {
             return Ok(None);
         }
         let texture = match texture {
-            Some(info) => self.texture(&TextureUse::of(info), Channel::Colour, name)?,
+            Some(info) => self.texture(&TextureUse::of(info), Channel::Colour, name),
             None => None,
         };
         let texture = match colours {
@@ -117,6 +119,7 @@ impl Importer<'_> {
         &mut self,
         source: &Source,
         colours: VertexColours,
+        is_solid: bool,
         name: &str,
     ) -> Result<Material, SceneError> {
         let default = Extensions::default();
@@ -141,7 +144,7 @@ impl Importer<'_> {
             None => Share::Constant(0.0),
         };
         let eta = relative_index(extensions);
-        let is_sheet = extensions.volume.as_ref().is_none_or(|volume| volume.thickness_factor.0 <= 0.0);
+        let is_sheet = extensions.volume.as_ref().map_or(!is_solid, |v| v.thickness_factor.0 <= 0.0);
         let volume = extensions.volume.as_ref().filter(|_| transmission.is_some() && !is_sheet);
         let absorption = volume.and_then(|volume| self.absorption(volume, name));
         let is_smooth = matches!(roughness, Share::Constant(roughness) if roughness <= MAX_SMOOTH);
@@ -225,7 +228,7 @@ impl Importer<'_> {
         principled.stretch = Stretch::AlongU;
         principled.anisotropic = self.share(strength, texture.as_ref(), BLUE, name)?;
         if let Some(info) = &texture {
-            principled.anisotropic_direction = self.texture(&TextureUse::of(info), Channel::Data, name)?;
+            principled.anisotropic_direction = self.texture(&TextureUse::of(info), Channel::Data, name);
         }
         let rotation = number(anisotropy, "anisotropyRotation").unwrap_or(0.0);
         principled.anisotropic_rotation = if rotation.is_finite() { rotation } else { 0.0 };
@@ -242,7 +245,7 @@ impl Importer<'_> {
     ) -> Result<Share, SceneError> {
         let factor = if factor.is_finite() { factor.clamp(0.0, 1.0) } else { 0.0 };
         let texture = match texture {
-            Some(info) if factor > 0.0 => self.texture(&TextureUse::of(info), channel, name)?,
+            Some(info) if factor > 0.0 => self.texture(&TextureUse::of(info), channel, name),
             _ => None,
         };
         Ok(match texture {
@@ -261,7 +264,7 @@ impl Importer<'_> {
         let [r, g, b, _] = base.base_color_factor.0;
         let scale = Rgb::new(r, g, b);
         let texture = match &base.base_color_texture {
-            Some(info) => self.texture(&TextureUse::of(info), Channel::Colour, name)?,
+            Some(info) => self.texture(&TextureUse::of(info), Channel::Colour, name),
             None => None,
         };
         let base_colour = match texture {
@@ -279,7 +282,7 @@ impl Importer<'_> {
     fn relief(&mut self, source: &Source, name: &str) -> Result<Option<Relief>, SceneError> {
         let Some(normal) = &source.normal_texture else { return Ok(None) };
         let strength = if normal.scale.is_finite() { normal.scale } else { 1.0 };
-        let texture = self.texture(&TextureUse::of_normal(normal), Channel::Data, name)?;
+        let texture = self.texture(&TextureUse::of_normal(normal), Channel::Data, name);
         Ok(texture.map(|texture| Relief::Normals { texture, strength, y_along_v: true }))
     }
 
@@ -298,7 +301,7 @@ impl Importer<'_> {
                 let cutoff = source.alpha_cutoff.as_ref().map_or(0.5, |cutoff| cutoff.0);
                 if colours == VertexColours::WithAlpha && cutoff > 0.0 && factor > 0.0 {
                     let image = match texture {
-                        Some(info) => self.texture(&TextureUse::of(info), ALPHA, name)?,
+                        Some(info) => self.texture(&TextureUse::of(info), ALPHA, name),
                         None => None,
                     };
                     let cut = Some(cutoff / factor);

@@ -15,7 +15,7 @@ use gltf_json::validation::Checked;
 /// Reads a primitive with the texture coordinates of set `uv_set`; `what` names it in messages. Tangents are read if
 /// `with_tangents`.
 ///
-/// Returns `None` for points and lines.
+/// Returns `None` for points, lines, and primitives without positions.
 pub(super) fn read(
     document: &GltfFile,
     primitive: &Primitive,
@@ -34,7 +34,8 @@ pub(super) fn read(
         Checked::Invalid => return Err(document.wrong(format!("{what}: its mode is unknown"))),
     };
     let Some(positions) = attribute(Semantic::Positions) else {
-        return Err(document.wrong(format!("{what} has no positions")));
+        report.lacks("a primitive without positions has no shape", "it is left out", what);
+        return Ok(None);
     };
     let positions = document.vectors::<3>(positions, what)?;
     let normals = attribute(Semantic::Normals);
@@ -61,10 +62,7 @@ pub(super) fn read(
     if let Some((name, length)) = lengths.iter().find(|(_, n)| *n != 0 && *n != positions.len()) {
         return Err(document.wrong(format!("{what} has {} vertices and {length} {name}", positions.len())));
     }
-    let corners = match primitive.indices {
-        Some(indices) => document.integers::<1>(indices, what)?.into_flattened(),
-        None => (0..positions.len() as u32).collect(),
-    };
+    let corners = corners(document, primitive, positions.len(), what)?;
     Ok(Some(RawMesh {
         positions: positions.iter().map(|p| DVec3::from(p.map(f64::from))).collect(),
         normals: normals.into_iter().map(Vec3::from).collect(),
@@ -74,6 +72,19 @@ pub(super) fn read(
         attributes,
         ..RawMesh::default()
     }))
+}
+
+/// Returns the numbers of the vertices of a primitive's corners.
+pub(super) fn corners(
+    document: &GltfFile,
+    primitive: &Primitive,
+    vertices: usize,
+    what: &str,
+) -> Result<Vec<u32>, SceneError> {
+    match primitive.indices {
+        Some(indices) => Ok(document.integers::<1>(indices, what)?.into_flattened()),
+        None => Ok((0..vertices as u32).collect()),
+    }
 }
 
 /// Returns the colours of vertices: their colour, and their opacity if there is one.
@@ -119,7 +130,8 @@ impl VertexColours {
     }
 }
 
-fn triangles(corners: &[u32], mode: Mode) -> Vec<[u32; 3]> {
+/// Returns the triangles of a list of corners.
+pub(super) fn triangles(corners: &[u32], mode: Mode) -> Vec<[u32; 3]> {
     let windows = corners.windows(3).map(|w| [w[0], w[1], w[2]]);
     match mode {
         Mode::TriangleStrip => {

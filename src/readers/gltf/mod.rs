@@ -16,9 +16,13 @@ mod camera;
 mod container;
 mod document;
 mod draco;
+mod generator;
+mod glass;
 mod importer;
 mod instancing;
+mod json;
 mod light;
+mod lost_lamps;
 mod material;
 mod mesh;
 mod meshopt;
@@ -29,6 +33,7 @@ mod report;
 mod skin;
 mod statements;
 mod texture;
+mod uri;
 mod volume;
 
 use crate::draft::{DEFAULT_RESOLUTION, DraftCamera, DraftView, Shot};
@@ -38,12 +43,12 @@ use crate::finish::framing;
 use crate::options::LoadOptions;
 use crate::plan::{Contents, Motion, ScenePlan};
 use crate::selection::PartSelection;
+use animation::Clip;
 use base::math::right_of;
 use camera::Viewer;
 use document::GltfFile;
 use glam::{DMat4, DVec3};
 use importer::Importer;
-use nodes::Local;
 use pose::Pose;
 use report::Findings;
 use std::collections::BTreeMap;
@@ -55,7 +60,7 @@ pub(crate) use importer::ImportOptions;
 /// Content of a model that is not part of the plan's contents.
 pub(crate) struct Imported {
     pub shot: Option<Shot>,
-    /// Motion by the first animation.
+    /// Motion by the animation.
     pub motion: Motion,
     /// Files read, with the hash of the bytes of each.
     pub sources: Vec<(PathBuf, u64)>,
@@ -64,8 +69,14 @@ pub(crate) struct Imported {
 /// Reads the model at `path` as a scene.
 pub(super) fn read(path: &Path, options: &LoadOptions, log: &mut Log) -> Result<ScenePlan, SceneError> {
     let mut contents = Contents::default();
-    let import_options =
-        ImportOptions { camera: options.camera.clone(), frame: options.frame, ..ImportOptions::default() };
+    let import_options = ImportOptions {
+        camera: options.camera.clone(),
+        frame: options.frame,
+        lumens_per_watt: options.lumens_per_watt,
+        thin_glass: options.thin_glass,
+        is_scene: true,
+        ..ImportOptions::default()
+    };
     let imported = import(path, &Location::file(path), &import_options, &mut contents, log)?;
     let shot = imported.shot.unwrap_or_else(|| {
         let forward = -framing::outlook(DVec3::Y);
@@ -88,9 +99,9 @@ pub(super) fn read(path: &Path, options: &LoadOptions, log: &mut Log) -> Result<
 /// Reads all cameras of the model at `path`, in its pose at rest. Its meshes are not read.
 pub(super) fn read_views(path: &Path) -> Result<Vec<Result<DraftView, SceneError>>, SceneError> {
     let document = GltfFile::without_buffers(path, &Location::file(path))?;
-    let tree = nodes::tree(&document, &PartSelection::default(), |_, node| Local::of(node))?;
-    let (to_world, fps) = (DMat4::IDENTITY, FRAMES_PER_SECOND);
-    Viewer { document: &document, tree: &tree, to_world, fps, is_posed: false }.views()
+    let (pose, to_world, fps) = (Pose::default(), DMat4::IDENTITY, FRAMES_PER_SECOND);
+    let tree = nodes::tree(&document, &PartSelection::default(), |node| pose.local(&document, node))?;
+    Viewer { document: &document, tree: &tree, pose: &pose, to_world, fps }.views()
 }
 
 /// Adds the model at `path`, to which `from` refers, to the contents of a scene.
@@ -106,18 +117,19 @@ pub fn import(
         let what = format!("time is {time}, and {} has no animation", path.display());
         return Err(from.wrong(what, "leave time out"));
     }
-    let animation = pose::span(&document);
-    let count = |[start, end]: [f64; 2]| ((end - start) * options.fps).round() as usize + 1;
-    // An animation that is not asked for may be damaged.
-    let animation_frames = animation.as_ref().ok().copied().flatten().map_or(0, count);
-    let span = match options.frame {
-        Some(_) => animation?,
-        None => None,
+    let mut report = Findings::default();
+    let clip = match Clip::of(&document) {
+        Err(error) if options.time.is_none() && options.frame.is_none() => {
+            report.lacks(&format!("the animation is damaged: {error}"), "the model stands still", "");
+            Clip::default()
+        }
+        clip => clip?,
     };
-    let of_frame = |frame: usize| span.map(|[start, _]| start + frame.saturating_sub(1) as f64 / options.fps);
-    let time = options.time.or(options.frame.and_then(of_frame));
-    let pose = Pose::at(&document, time)?;
-    let tree = nodes::tree(&document, &options.selection, |index, node| pose.local(index, node))?;
+    let animation_frames = clip.frames(options.fps);
+    let of_frame = |frame: usize| frame.saturating_sub(1) as f64 / options.fps;
+    let posed_frame = options.frame.filter(|_| animation_frames > 0);
+    let pose = Pose { clip, time: options.time.or(posed_frame.map(of_frame)) };
+    let tree = nodes::tree(&document, &options.selection, |node| pose.local(&document, node))?;
     if !tree.iter().any(|placed| placed.selected) && !options.selection.only.is_empty() {
         return Err(from.undefined("node", &options.selection.only.join("\", \"")));
     }
@@ -127,7 +139,7 @@ pub fn import(
         pose: &pose,
         options,
         contents,
-        report: Findings::default(),
+        report,
         surfaces: BTreeMap::new(),
         images: BTreeMap::new(),
         meshes: BTreeMap::new(),
@@ -143,12 +155,18 @@ pub fn import(
     for name in document::unread_extensions(&document) {
         report.lacks(&format!("the extension {name} is not supported"), "it is left out", "");
     }
-    let is_posed = time.is_some();
-    let viewer =
-        Viewer { document: &document, tree: &tree, to_world: options.to_world, fps: options.fps, is_posed };
+    lost_lamps::report(&document, &tree, &mut report);
+    let viewer = Viewer {
+        document: &document,
+        tree: &tree,
+        pose: &pose,
+        to_world: options.to_world,
+        fps: options.fps,
+    };
     let shot = viewer.shot(options.camera.as_deref(), &mut report)?;
+    pose.report(&document, &tree, options.is_scene, animation_frames, &mut report);
     report.write(&document.place, log)?;
-    let frames = span.map_or(0, count);
+    let frames = posed_frame.map_or(0, |_| animation_frames);
     let motion = Motion { frames, animation_frames, moves: frames > 0 && pose.moves(&document, &tree) };
     Ok(Imported { shot, motion, sources: document.sources })
 }

@@ -24,7 +24,7 @@ pub(super) fn joints(
     let skin = document.get(index, "skin")?;
     let what = format!("skin {}", index.value());
     let mut to_file = vec![None; document.root.nodes.len()];
-    tree.iter().for_each(|placed| to_file[placed.node] = Some(placed.to_file));
+    tree.iter().for_each(|placed| to_file[placed.node] = Some(placed.place.to_file));
     let inverse = match skin.inverse_bind_matrices {
         Some(accessor) => document.vectors::<16>(accessor, &what)?,
         None => Vec::new(),

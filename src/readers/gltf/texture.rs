@@ -1,7 +1,7 @@
 //! Textures: images, samplers and transforms of texture coordinates.
 
-use super::document::Resolved;
 use super::importer::Importer;
+use super::uri::Resolved;
 use crate::decode::Channel;
 use crate::error::SceneError;
 use crate::plan::{ImageSource, TexturePlan, TextureSource};
@@ -61,8 +61,20 @@ fn image_of(texture: &Texture) -> Option<Index<image::Image>> {
 }
 
 impl Importer<'_> {
-    /// Returns the texture of the material `name`; `None` if its image format is not supported.
-    pub(super) fn texture(
+    /// Returns the texture of the material `name`; `None` if it cannot be read, which a warning says.
+    pub(super) fn texture(&mut self, slot: &TextureUse, channel: Channel, name: &str) -> Option<TextureId> {
+        self.found_texture(slot, channel, name).unwrap_or_else(|error| {
+            let what = match error {
+                SceneError::Mesh { what, .. } => what,
+                other => other.to_string(),
+            };
+            let fallback = "the texture is left out; export it again";
+            self.report.lacks(&format!("a texture cannot be read: {what}"), fallback, name);
+            None
+        })
+    }
+
+    fn found_texture(
         &mut self,
         slot: &TextureUse,
         channel: Channel,

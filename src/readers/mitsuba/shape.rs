@@ -36,10 +36,9 @@ impl Converter<'_> {
             return Err(instance.place.wrong(what, "refer to a shapegroup"));
         }
         let to_world = outer * instance.transform("to_world")?.unwrap_or(DMat4::IDENTITY);
-        let determinant = DMat3::from_mat4(to_world).determinant();
-        if determinant == 0.0 || !determinant.is_finite() {
-            let remedy = "give a scale other than 0 along each axis";
-            return Err(instance.place.wrong("the transform of an instance is singular", remedy));
+        if !DMat3::from_mat4(to_world).determinant().is_finite() {
+            let what = "the transform of an instance is not finite";
+            return Err(instance.place.wrong(what, "give smaller numbers"));
         }
         instance.report_unused(self.log)?;
         let group = self.group(group)?;

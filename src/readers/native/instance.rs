@@ -97,12 +97,10 @@ fn matrix(numbers: &[f64], place: &Location) -> Result<DMat4, SceneError> {
     Ok(matrix)
 }
 
-/// Rejects transforms without an inverse.
+/// Rejects transforms that are not finite.
 fn check(to_world: &DMat4, place: &Location) -> Result<(), SceneError> {
-    let determinant = DMat3::from_mat4(*to_world).determinant();
-    if determinant == 0.0 || !determinant.is_finite() {
-        let remedy = "give a scale other than 0 along each axis";
-        return Err(place.wrong("the transform of an instance is singular", remedy));
+    match DMat3::from_mat4(*to_world).determinant().is_finite() {
+        true => Ok(()),
+        false => Err(place.wrong("the transform of an instance is not finite", "give smaller numbers")),
     }
-    Ok(())
 }

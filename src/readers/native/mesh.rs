@@ -22,8 +22,9 @@ impl SceneBuilder<'_> {
         if let Some(path) = self.model(text) {
             return self.import(&path, text, &place);
         }
-        if text.lumens_per_watt.is_some() || text.fps.is_some() || text.time.is_some() {
-            let what = "lumens_per_watt, fps and time are only for glTF models";
+        let of_models = [text.lumens_per_watt, text.fps, text.time];
+        if of_models.iter().any(Option::is_some) || text.thin_glass.is_some() {
+            let what = "lumens_per_watt, thin_glass, fps and time are only for glTF models";
             return Err(place.wrong(what, "leave them out"));
         }
         let (name, geometry) = self.geometry(text, &place)?;
@@ -80,6 +81,8 @@ impl SceneBuilder<'_> {
             material: self.named_material(text)?,
             emission,
             lumens_per_watt: positive(text.lumens_per_watt, "lumens_per_watt")?.map(|lumens| lumens as f32),
+            thin_glass: text.thin_glass.unwrap_or(false),
+            is_scene: false,
             fps: positive(text.fps, "fps")?.unwrap_or(FRAMES_PER_SECOND),
             time: text.time.map(f64::from),
             frame: None,

@@ -263,6 +263,8 @@ pub(super) struct MeshText {
     pub except: Option<NamesText>,
     /// Units of a glTF model's lights per unit of the renderer.
     pub lumens_per_watt: Option<Number>,
+    /// True if glass of a glTF model without a volume is thin, even if Blender wrote a closed mesh.
+    pub thin_glass: Option<bool>,
     /// Frames per second of a glTF model's animation.
     pub fps: Option<Number>,
     /// Time in seconds of a glTF model's animation whose pose the model takes.
