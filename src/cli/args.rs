@@ -144,7 +144,7 @@ pub struct RenderArgs {
 #[command(after_long_help = exit::HELP)]
 pub struct WalkArgs {
     /// Scene with a camera path: lightsplat TOML (.toml), or glTF (.glb, .gltf) with an animation. Each frame shows the
-    /// model in its pose of the first animation, at 24 frames per second
+    /// model in its pose of the animation, at 24 frames per second
     pub scene: PathBuf,
     /// Images to write. `####` or `%04d` stands for the number of the frame: f.####.exr or f.%04d.exr
     #[arg(short, long, value_name = "NAME.####.exr")]

@@ -21,7 +21,7 @@ fn read(name: &str, text: &str, most: Option<u64>) -> Result<Loaded, String> {
     let places = "# places\n1 0 0 5  0 1 0 0  0 0 1 0\n\n0 -2 0 0, 1 0 0 7, 0 0 1 1, 0 0 0 1 # turned\n";
     fs::write(folder.path().join("places.txt"), places).unwrap();
     fs::write(folder.path().join("wrong.txt"), "1 0 0 5  0 1 0 0  0 0 1 0\n1 2 3\n").unwrap();
-    fs::write(folder.path().join("flat.txt"), "\n\n1 0 0 0  0 0 0 0  0 0 1 0\n").unwrap();
+    fs::write(folder.path().join("huge.txt"), "\n\n1e200 0 0 0  0 1e200 0 0  0 0 1e200 0\n").unwrap();
     fs::write(folder.path().join("none.txt"), "# nothing\n").unwrap();
     fs::write(folder.path().join(name), text).unwrap();
     let options = LoadOptions { most_copied: most, strict: true, ..LoadOptions::default() };
@@ -123,6 +123,24 @@ fn no_point_is_closer_to_the_origin_than_instances_reach() {
     }
 }
 
+/// Flat instances are what is left of them, whether the others are stored or copied.
+#[test]
+fn instances_with_a_scale_of_0_are_flat_or_nothing() {
+    let shown = "[[instance]]\ngroup = \"tree\"\nplaces = [[1,0,0,0, 0,1,0,0, 0,0,1,0], [1,0,0,9, 0,1,0,0, 0,0,1,0]]\n";
+    let flat = |scale: &str| format!("[[instance]]\ngroup = \"tree\"\ntransform = [{{ scale = {scale} }}]\n");
+    let text = |more: &str| format!("{HEAD}{TREE}{shown}{more}");
+    let shapes = |text: &str, most| read("s.toml", text, most).unwrap();
+    for most in [Some(0), None] {
+        let plain = shapes(&text(""), most);
+        let hidden = shapes(&text(&flat("0")), most);
+        assert_eq!(corners(&hidden), corners(&plain));
+        let flattened = shapes(&text(&flat("[1, 0, 1]")), most);
+        let count = corners(&flattened).len();
+        assert!(count > corners(&plain).len(), "{count}");
+        assert!(corners(&flattened)[..].iter().any(|triangle| triangle.iter().all(|p| p.y.abs() < 1e-6)));
+    }
+}
+
 #[test]
 fn wrong_instances_are_named_with_their_line() {
     let twice = "[[instance]]\ngroup = \"tree\"\nplaces = \"places.txt\"\n";
@@ -131,14 +149,13 @@ fn wrong_instances_are_named_with_their_line() {
         ("[[instance]]\ngroup = \"tree\"\nplaces = \"gone.txt\"\n", "cannot read"),
         ("[[instance]]\ngroup = \"tree\"\nplaces = \"wrong.txt\"\n", "wrong.txt:2: a place is no matrix"),
         (
-            "[[instance]]\ngroup = \"tree\"\nplaces = \"flat.txt\"\n",
-            "flat.txt:3: the transform of an instance is singular",
+            "[[instance]]\ngroup = \"tree\"\nplaces = \"huge.txt\"\n",
+            "huge.txt:3: the transform of an instance is not finite",
         ),
         ("[[instance]]\ngroup = \"tree\"\nplaces = \"none.txt\"\n", "none.txt: there are no places"),
         ("[[instance]]\ngroup = \"tree\"\nplaces = []\n", "there are no places"),
         ("[[instance]]\ngroup = \"tree\"\nplaces = [[1, 2]]\n", "a place is no matrix"),
         ("[[instance]]\ngroup = \"tree\"\nplaces = 3\n", "expected the name of a file"),
-        ("[[instance]]\ngroup = \"tree\"\ntransform = [{ scale = 0 }]\n", "singular"),
         (
             "[[instance]]\ngroup = \"tree\"\nplaces = [[1,0,0,0, 0,1,0,0, 0,0,1,0, 0,1,0,1]]\n",
             "is not 0 0 0 1",
@@ -203,7 +220,7 @@ fn mitsuba_instances_are_where_copies_are() {
     let text = scene(&format!("{group}{}<shape type=\"sphere\"/>", shown.concat()));
     assert_eq!(assert_alike("s.xml", &text), (3, 7));
     for (body, expected) in [
-        (format!("{group}{}", instance("<scale z=\"0\"/>")), "singular"),
+        (format!("{group}{}", instance("<scale value=\"1e150\"/>")), "not finite"),
         (
             "<shape type=\"shapegroup\" id=\"g\"/><shape type=\"instance\"><ref id=\"g\"/></shape>"
                 .to_owned(),

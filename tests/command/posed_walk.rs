@@ -86,7 +86,12 @@ fn each_frame_shows_the_pose_of_its_time_as_a_still_of_it_does() {
     let sandbox = sandbox(Moved::Square, true);
     let said = run(&sandbox, "walk", "a.#.exr", &[]).expect(0).stderr;
     assert!(said.contains("the model moves") && said.contains("3 frames rendered"), "{said}");
-    assert!(!said.contains("stands still"), "{said}");
+    // All commands say the same of the animation.
+    assert!(!said.contains("pose at rest"), "{said}");
+    let said = run(&sandbox, "render", "rest.exr", &["--strict"]).expect(0).stderr;
+    assert!(said.contains("there is an animation of 3 frames; this is the pose at rest"), "{said}");
+    let facts = sandbox.run(&["info", "m.gltf", "--strict", "--json"]).expect(0).stdout;
+    assert!(facts.contains("\"frames\":3") && facts.contains("\"frame_range\":[1,3]"), "{facts}");
     for (frame, x) in [("1", -4.0), ("2", 0.0), ("3", 4.0)] {
         let image = colours(&sandbox, &format!("a.{frame}.exr"));
         let (mean, place) = light(&image);

@@ -175,11 +175,6 @@ impl Clip {
         self.tracks.iter().filter(move |track| track.node == node)
     }
 
-    /// Returns all tracks.
-    pub fn tracks(&self) -> &[Track] {
-        &self.tracks
-    }
-
     /// Returns the number of frames from the time 0 to the last key of all; 0 if nothing plays.
     pub fn frames(&self, fps: f64) -> usize {
         let end = self.tracks.iter().map(Track::end).fold(0.0, f64::max);

@@ -1,3 +1,4 @@
+mod as_written;
 mod colours;
 mod compressed;
 mod container;
@@ -52,6 +53,10 @@ fn bounds(loaded: &Loaded, mesh: usize) -> [Vec3; 2] {
     let centre = loaded.scene.centre.as_vec3();
     let positions = loaded.scene.meshes[mesh].positions.iter().map(|p| p + centre);
     positions.fold([Vec3::INFINITY, Vec3::NEG_INFINITY], |[low, high], p| [low.min(p), high.max(p)])
+}
+
+fn near(a: Vec3, b: [f32; 3]) -> bool {
+    a.distance(Vec3::from(b)) < 1e-5
 }
 
 #[test]
@@ -171,25 +176,25 @@ fn cameras_and_their_animation_are_the_walk() {
     assert_eq!(cameras.resolution, [1018, 509]);
     assert!((cameras.still.tan_half_x - 2.0 * 0.5f32.tan()).abs() < 1e-4 && cameras.still.near == 0.1);
     assert!((cameras.still.origin + centre).distance(Vec3::Z * 5.0) < 1e-5);
-    // The animation lasts from 0.5 to 2.5 s, at 24 frames per second.
-    assert_eq!(cameras.path.len(), 49);
+    // The clock starts at 0, and the keys are at 0.5, 1.5 and 2.5 s, at 24 frames per second.
+    assert_eq!(cameras.path.len(), 61);
     let at = |frame: usize| cameras.path[frame - 1].origin + centre;
     // The camera's own spline is Hermite, from 5 to 6, with a tangent of 2 at the start.
     let t = 0.5f32;
     let z = (2.0 * t.powi(3) - 3.0 * t * t + 1.0) * 5.0
         + (t.powi(3) - 2.0 * t * t + t) * 2.0
         + (3.0 * t * t - 2.0 * t.powi(3)) * 6.0;
-    assert!(at(1).distance(Vec3::new(0.0, 0.0, 5.0)) < 1e-5);
-    assert!(at(13).distance(Vec3::new(2.0, 0.0, z)) < 1e-5, "{}", at(13));
+    assert!([1, 13].map(at).iter().all(|at| at.distance(Vec3::new(0.0, 0.0, 5.0)) < 1e-5));
+    assert!(at(25).distance(Vec3::new(2.0, 0.0, z)) < 1e-5, "{}", at(25));
     // The rotation is 90° from the second key on, so the camera's z points to x.
-    assert!(at(25).distance(Vec3::new(4.0 + 6.0, 0.0, 0.0)) < 1e-5, "{}", at(25));
-    assert!(cameras.path[24].forward.distance(Vec3::NEG_X) < 1e-5);
-    assert!(at(49).distance(Vec3::new(4.0, 8.0, -6.0)) < 1e-5, "{}", at(49));
+    assert!(at(37).distance(Vec3::new(4.0 + 6.0, 0.0, 0.0)) < 1e-5, "{}", at(37));
+    assert!(cameras.path[36].forward.distance(Vec3::NEG_X) < 1e-5);
+    assert!(at(61).distance(Vec3::new(4.0, 8.0, -6.0)) < 1e-5, "{}", at(61));
 
     let (_, model, _) = samples::all().into_iter().find(|(name, ..)| *name == "camera").unwrap();
     let scene = "resolution = [64, 64]\n[[mesh]]\nfile = \"m.glb\"\nfps = 5\n[environment]\nradiance = 1\n";
     let loaded = load_beside("s.toml", &[("m.glb", &model.glb()), ("s.toml", scene.as_bytes())]).unwrap();
-    assert_eq!((loaded.cameras.path.len(), loaded.cameras.resolution), (11, [64, 64]));
+    assert_eq!((loaded.cameras.path.len(), loaded.cameras.resolution), (14, [64, 64]));
 }
 
 #[test]

@@ -15,7 +15,7 @@ pub fn all() -> Vec<(&'static str, Model, &'static [&'static str])> {
         ("textures", textures(), &["different wrap modes"]),
         ("emission", emission(), &[]),
         ("lights", lights(), &[]),
-        ("camera", camera(), &["anything but the camera", "a second animation"]),
+        ("camera", camera(), &[]),
         ("alpha", alpha(), &[]),
         ("glass", glass(), &["sheets that transmit in part"]),
         ("layers", layers(), &["a quarter", "sheen", "coloured reflection"]),
@@ -25,7 +25,7 @@ pub fn all() -> Vec<(&'static str, Model, &'static [&'static str])> {
         ("draco", packed::draco(&packed::hex(packed::EDGEBREAKER)), &[]),
         ("draco in order", packed::draco(&packed::hex(packed::SEQUENTIAL)), &[]),
         ("meshopt", packed::meshopt("EXT_meshopt_compression"), &[]),
-        ("face", face(), &["anything but the camera"]),
+        ("face", face(), &[]),
         (
             "unmodelled",
             unmodelled(),
