@@ -3,7 +3,7 @@
 use clap::{Arg, Command};
 
 /// Options that only `--help` shows, by the names of their fields. Settings of the methods say so themselves.
-const RARE: [&str; 20] = [
+const RARE: [&str; 22] = [
     "aov_mode",
     "format",
     "inspect",
@@ -15,6 +15,8 @@ const RARE: [&str; 20] = [
     "env_rotate",
     "up",
     "define",
+    "lumens_per_watt",
+    "thin_glass",
     "verify_against",
     "verify_samples",
     "idle_frames",
