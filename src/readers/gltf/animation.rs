@@ -1,7 +1,7 @@
 //! Animated transforms of nodes, and weights of morph targets.
 
 use super::document::GltfFile;
-use super::nodes::{Local, quaternion};
+use super::transform::{Local, quaternion};
 use crate::error::SceneError;
 use glam::{DQuat, DVec3};
 use gltf_json::animation::{Animation, Channel, Interpolation, Property};

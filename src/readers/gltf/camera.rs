@@ -2,9 +2,10 @@
 
 use super::animation::Track;
 use super::document::GltfFile;
-use super::nodes::{Place, Placed, unflattened};
+use super::nodes::Placed;
 use super::pose::Pose;
 use super::report::Findings;
+use super::transform::{Place, unflattened};
 use crate::draft::{DEFAULT_RESOLUTION, DraftCamera, DraftView, Shot};
 use crate::error::SceneError;
 use base::math::{right_of, unit};

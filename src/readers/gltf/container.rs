@@ -1,8 +1,8 @@
 //! The container: JSON and binary chunk of a `.gltf` or `.glb` file.
 
 use super::json;
-use super::nodes::Local;
 use super::statements::{self, Unread};
+use super::transform::Local;
 use crate::error::{Location, SceneError};
 use gltf_json::Root;
 use serde_json::Value;
@@ -38,7 +38,7 @@ impl<'a> Container<'a> {
 
     /// Parses the JSON of glTF 2.0.
     pub fn description(&self, place: &Location) -> Result<Description, SceneError> {
-        // What nests too deeply for this is read without repairs.
+        // Text that nests too deeply for this is read without repairs.
         let mut value: Value = serde_json::from_slice(self.json).unwrap_or_default();
         let is_old = is_old(&value);
         let is_repaired = json::repair(&mut value);

@@ -3,8 +3,8 @@
 use super::container::{Container, Description};
 use super::draco;
 use super::meshopt;
-use super::nodes::Local;
 use super::statements;
+use super::transform::Local;
 use super::uri::{self, Resolved};
 use crate::error::{Location, SceneError};
 use crate::file::{fnv1a, folder_of, read_file};

@@ -1,7 +1,7 @@
 //! Places of the instances of a node's mesh (`EXT_mesh_gpu_instancing`).
 
 use super::document::GltfFile;
-use super::nodes::quaternion;
+use super::transform::quaternion;
 use crate::error::SceneError;
 use glam::{DMat4, DVec3};
 use gltf_json::{Index, Node};

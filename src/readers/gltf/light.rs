@@ -7,8 +7,8 @@
 
 use super::document::GltfFile;
 use super::generator::Generator;
-use super::nodes::Place;
 use super::report::Findings;
+use super::transform::Place;
 use crate::error::SceneError;
 use base::math::{Rgb, unit};
 use glam::{DMat3, DVec3, Vec3};

@@ -33,6 +33,7 @@ mod report;
 mod skin;
 mod statements;
 mod texture;
+mod transform;
 mod uri;
 mod volume;
 

@@ -2,8 +2,9 @@
 
 use super::animation::Clip;
 use super::document::GltfFile;
-use super::nodes::{Local, Placed};
+use super::nodes::Placed;
 use super::report::Findings;
+use super::transform::Local;
 use gltf_json::Node;
 use gltf_json::mesh::Mesh;
 use std::collections::BTreeSet;
