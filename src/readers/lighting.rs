@@ -4,7 +4,7 @@
 
 use crate::decode::srgb_to_linear;
 use crate::error::{Location, Log, SceneError};
-use crate::plan::{Contents, EnvironmentPlan, MaterialPlan};
+use crate::plan::{Contents, EnvironmentPlan, MaterialPlan, NamedAppearances};
 use crate::sky::SkyPlan;
 use base::math::Rgb;
 use glam::{DMat4, DVec3};
@@ -174,7 +174,7 @@ fn has_lamp(contents: &Contents) -> bool {
             is_lamp(&mesh.emission)
                 || match &mesh.material {
                     MaterialPlan::One(_) => false,
-                    MaterialPlan::ByName(appearances, _) => {
+                    MaterialPlan::ByName(NamedAppearances { appearances, .. }, _) => {
                         appearances.values().any(|a| is_lamp(&a.emission))
                     }
                 }

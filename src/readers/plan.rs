@@ -7,7 +7,7 @@ use crate::decode::{Channel, DecodedImage};
 use crate::draft::Shot;
 use crate::error::{Location, SceneError};
 use crate::file::read_file;
-use crate::mesh::{Placement, RawMesh, ply, stl};
+use crate::mesh::{Placement, RawMesh, ply_header, stl};
 use crate::selection::PartSelection;
 use crate::sky::SkyPlan;
 use base::math::Rgb;
@@ -208,7 +208,7 @@ impl MeshSource {
     /// Returns true if the file of a PLY or STL mesh, to which `from` refers, has colours of vertices or faces.
     pub fn has_colours(&self, from: &Location) -> Result<bool, SceneError> {
         Ok(match self {
-            MeshSource::Ply(path) => ply::has_colours(&read_file(path, from)?),
+            MeshSource::Ply(path) => ply_header::has_colours(&read_file(path, from)?),
             MeshSource::Stl(path) => stl::has_colours(&read_file(path, from)?),
             MeshSource::Obj(..)
             | MeshSource::Serialized(..)
@@ -229,8 +229,16 @@ pub struct Appearance {
 #[derive(Clone, Debug)]
 pub(crate) enum MaterialPlan {
     One(MaterialId),
-    /// Materials by name of the file's groups, and the material of unknown names.
-    ByName(BTreeMap<String, Appearance>, MaterialId),
+    /// Materials of the file's groups, and the material of unknown names.
+    ByName(NamedAppearances, MaterialId),
+}
+
+/// Appearances of the groups of a file by their names.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct NamedAppearances {
+    pub appearances: BTreeMap<String, Appearance>,
+    /// Names of groups whose texts in the file hold a comment, too.
+    pub names: BTreeMap<String, String>,
 }
 
 /// Plan of a texture to read.

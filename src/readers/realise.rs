@@ -234,7 +234,11 @@ impl Contents {
                             ));
                         }
                         let what = format!("there are no triangles or polygons in {}", path.display());
-                        log.warn(&plan.place, what, "the mesh is left out; repair or re-export it")?;
+                        let remedy = "make a mesh of its points or curves, or export it with its faces";
+                        if plan.place.path == *path {
+                            return Err(plan.place.wrong(what, remedy));
+                        }
+                        log.warn(&plan.place, what, format!("the mesh is left out; {remedy}"))?;
                     }
                 }
             }

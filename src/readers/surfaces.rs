@@ -5,7 +5,7 @@ use crate::draft::DraftMesh;
 use crate::error::Warning;
 use crate::mesh::material_parts::split_by_material;
 use crate::mesh::{self, Normals, Placement, RawMesh};
-use crate::plan::{Appearance, MaterialPlan, MeshPlan, MeshSource};
+use crate::plan::{Appearance, MaterialPlan, MeshPlan, MeshSource, NamedAppearances};
 use glam::{DMat4, Vec2};
 use std::collections::BTreeMap;
 
@@ -36,7 +36,7 @@ impl MeshPart {
 }
 
 /// Returns the parts of a plan, one for each material. `remarks` gets warnings about materials that are not there.
-pub(crate) fn parts(plan: &MeshPlan, raw: RawMesh, remarks: &mut Vec<Warning>) -> Vec<MeshPart> {
+pub(crate) fn parts(plan: &MeshPlan, mut raw: RawMesh, remarks: &mut Vec<Warning>) -> Vec<MeshPart> {
     if plan.placement.normals != Normals::AsGiven {
         // Smoothing groups mean nothing where all faces are smooth or all are flat, as in Mitsuba.
         remarks.retain(|remark| !remark.what.contains("statement \"s\""));
@@ -45,7 +45,12 @@ pub(crate) fn parts(plan: &MeshPlan, raw: RawMesh, remarks: &mut Vec<Warning>) -
         MaterialPlan::One(material) => {
             vec![(plan.name.clone(), Appearance { material: *material, emission: None }, raw)]
         }
-        MaterialPlan::ByName(appearances, other) => {
+        MaterialPlan::ByName(NamedAppearances { appearances, names }, other) => {
+            for (text, _) in &mut raw.groups {
+                if let Some(name) = names.get(text) {
+                    text.clone_from(name);
+                }
+            }
             let has_colours = find(&raw.attributes, COLOUR).is_some();
             let parts = split_by_material(raw);
             // Faces without a material show the colours of their vertices.

@@ -4,7 +4,7 @@
 //! that reading counts of which the file exists.
 
 use super::mtl_statements::MAP_OPTIONS;
-use super::wavefront::name;
+use super::wavefront::{name, readings};
 use crate::statements::{Fate, Statement};
 use std::path::PathBuf;
 
@@ -67,8 +67,14 @@ pub(crate) fn parse(text: &str, find: impl Fn(&str) -> Option<PathBuf>) -> Resul
     if let Some(path) = find(text) {
         return Ok(Some((Ok(path), MapOptions::default())));
     }
-    let text = &name(text.as_bytes());
-    let words: Vec<&str> = text.split_whitespace().collect();
+    let mut readings = readings(text.as_bytes()).into_iter().map(|text| reading(&text, &find));
+    let existing = |map: &Result<Option<Map>, String>| matches!(map, Ok(Some((Ok(_), _))));
+    readings.find(existing).unwrap_or_else(|| reading(&name(text.as_bytes()), &find))
+}
+
+/// Returns the map of a text whose options may have a comment behind them.
+fn reading(text: &str, find: impl Fn(&str) -> Option<PathBuf>) -> Result<Option<Map>, String> {
+    let words: Vec<&str> = text.split_ascii_whitespace().collect();
     let part = |from: usize, to: usize| {
         let start = words[from].as_ptr() as usize - text.as_ptr() as usize;
         let last = words[to - 1];
@@ -93,7 +99,8 @@ pub(crate) fn parse(text: &str, find: impl Fn(&str) -> Option<PathBuf>) -> Resul
     };
     let mut read = MapOptions::default();
     read.take(&words[..from])?;
-    read.take(&words[to..])?;
+    let comment = words[to..].iter().position(|word| word.starts_with('#'));
+    read.take(&words[to..comment.map_or(words.len(), |at| to + at)])?;
     Ok(Some((file, read)))
 }
 
@@ -228,6 +235,8 @@ mod tests {
             ("-o 0.5 -s 3 5 2 tiles.png", "2 tiles.png", [3.0, 5.0], [0.5, 0.0]),
             ("-s 3 2 tiles.png", "2 tiles.png", [3.0, 1.0], [0.0, 0.0]),
             ("a #1.png", "a #1.png", [1.0, 1.0], [0.0, 0.0]),
+            ("-s 4 2 a #1.png -o 0.5 # red", "a #1.png", [4.0, 2.0], [0.5, 0.0]),
+            ("-s 4 2 tile.png #red", "tile.png", [4.0, 2.0], [0.0, 0.0]),
         ] {
             let (found, options) = read(text).unwrap();
             assert_eq!(found, Ok(PathBuf::from(file)), "{text}");

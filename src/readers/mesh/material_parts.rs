@@ -74,7 +74,7 @@ mod tests {
 
     #[test]
     fn material_groups_split_the_mesh_and_share_nothing() {
-        let text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nusemtl x\nf 1 2 4\nusemtl y\nusemtl x # again\n\
+        let text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nusemtl x\nf 1 2 4\nusemtl y\nusemtl x\n\
             f 2 3 4\n";
         let mesh = obj::read(text.as_bytes(), Path::new("t.obj"), &PartSelection::default(), &mut Vec::new())
             .unwrap();

@@ -8,16 +8,22 @@
 //! outside stays outside, with or without normals. This is the rule of glTF 2.0 and of Mitsuba 3 later than 3.9.1.
 //! Mitsuba up to 3.9.1 turns mirrored meshes without normals inside out.
 
+pub(crate) mod encodings;
+mod faults;
 pub mod map_options;
 pub mod material_parts;
 pub mod mtl;
 pub(crate) mod mtl_statements;
+mod numerals;
 pub mod obj;
 pub mod obj_references;
 mod obj_statements;
 pub mod ply;
 mod ply_attributes;
+mod ply_contents;
+pub(crate) mod ply_header;
 mod ply_statements;
+mod ply_values;
 mod polygon;
 pub mod serialized;
 pub mod shapes;
@@ -26,7 +32,7 @@ pub mod stl;
 mod stl_colours;
 mod stl_statements;
 mod stl_text;
-mod wavefront;
+pub(crate) mod wavefront;
 
 pub(crate) use smooth::vertex_normals as smooth_normals;
 

@@ -4,8 +4,9 @@
 //!
 //! Reason against `tobj` 4.0.5: a colour of one or two numbers makes its MTL reader panic, and its errors name no line.
 
+use super::encodings;
 use super::mtl_statements::listed;
-use super::wavefront::{name, numbers, shown, split_word, statements, values, words};
+use super::wavefront::{self, numbers, shown, split_word, statements, values, words};
 use crate::error::{Location, SceneError};
 use crate::statements::Fate;
 use base::math::Rgb;
@@ -33,6 +34,8 @@ pub(crate) struct Unmodelled {
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct ClassicMaterial {
     pub name: String,
+    /// Name with what may be a comment behind it, or a part of it.
+    pub text: String,
     pub place: Location,
     /// Ka.
     pub ambient: Option<Rgb>,
@@ -71,7 +74,7 @@ pub fn read(bytes: &[u8], path: &Path) -> Result<Vec<ClassicMaterial>, SceneErro
             continue;
         }
         if word.eq_ignore_ascii_case(b"newmtl") {
-            materials.push(ClassicMaterial::new(name(rest), place));
+            materials.push(ClassicMaterial::new(rest, place));
         } else if let Some(material) = materials.last_mut() {
             material.read(word, rest, line).map_err(|what| SceneError::mesh(place, what))?;
         }
@@ -80,9 +83,10 @@ pub fn read(bytes: &[u8], path: &Path) -> Result<Vec<ClassicMaterial>, SceneErro
 }
 
 impl ClassicMaterial {
-    fn new(name: String, place: Location) -> ClassicMaterial {
+    fn new(name: &[u8], place: Location) -> ClassicMaterial {
         ClassicMaterial {
-            name,
+            name: wavefront::name(name),
+            text: encodings::text(name.trim_ascii()),
             place,
             ambient: None,
             diffuse: Rgb::ZERO,
@@ -133,8 +137,8 @@ impl ClassicMaterial {
             }
             (_, keyword) if keyword.starts_with("map_") || matches!(keyword, "norm" | "bump") => {
                 let keyword = if keyword == "map_bump" { "bump" } else { keyword };
-                let text = String::from_utf8_lossy(rest).trim().to_owned();
-                if !name(rest).is_empty() {
+                let text = encodings::text(rest.trim_ascii());
+                if !wavefront::name(rest).is_empty() {
                     self.maps.insert(keyword, MapStatement { text, line });
                 }
             }

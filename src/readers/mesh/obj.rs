@@ -1,7 +1,9 @@
 //! Reader of Wavefront OBJ: positions, texture coordinates, normals, polygons and material groups of selected objects.
 //!
-//! Six numbers after `v` are a position and a colour, coded in sRGB as Blender and MeshLab write it. A seventh is an
-//! opacity, which is not read. A fourth alone is a weight.
+//! Six numbers after `v` are a position and a colour, coded in sRGB as Blender and MeshLab write it. Colours of whole
+//! numbers above 1 go up to 255. A seventh number is an opacity, which is not read. A fourth alone is a weight.
+//!
+//! Faces that cannot be used are left out, and named once for each reason.
 //!
 //! A vertex is a distinct triple of indices (position, uv, normal), numbered by first use.
 //!
@@ -14,8 +16,10 @@
 //! - A face of two corners is no error.
 //! - It splits the mesh at `o`, `g` and `usemtl`, so vertices are no longer shared and smooth normals change.
 
+use super::encodings::{self, spellings};
+use super::faults::{Fault, Faults, MAX_CODE, are_codes, note_of_codes};
 use super::obj_statements::UnreadKeywords;
-use super::wavefront::{is_coloured, name, numbers, split_word, statements, values};
+use super::wavefront::{is_coloured, name, numbers, shown, split_word, statements, values, words};
 use super::{RawMesh, polygon};
 use crate::attributes::{NamedAttribute, VERTEX_COLOUR};
 use crate::decode::srgb_to_linear;
@@ -38,7 +42,7 @@ pub fn read(
     selection: &PartSelection,
     remarks: &mut Vec<Warning>,
 ) -> Result<RawMesh, SceneError> {
-    let mut reader = ObjReader { selected: selection.only.is_empty(), ..ObjReader::default() };
+    let mut reader = ObjReader::new(path, selection.only.is_empty());
     // Estimates for 30 bytes per line. They affect the speed only.
     reader.positions.reserve(bytes.len() / 100);
     reader.mesh.triangles.reserve(bytes.len() / 60);
@@ -51,14 +55,19 @@ pub fn read(
     }
     let (has_faces, has_normals) = (!reader.mesh.triangles.is_empty(), !reader.normals.is_empty());
     reader.unread.report(path, has_faces, has_normals, remarks);
+    std::mem::take(&mut reader.faults).report(remarks);
+    reader.decode_colours(remarks);
     Ok(reader.finish())
 }
 
-#[derive(Default)]
-struct ObjReader {
+struct ObjReader<'a> {
+    /// For messages.
+    path: &'a Path,
     positions: Vec<DVec3>,
-    /// Colours of the positions up to the last one that has a colour.
+    /// Colours of the positions up to the last one that has a colour, coded.
     colours: Vec<Rgb>,
+    /// Line of the first colour.
+    colour_line: u32,
     uvs: Vec<Vec2>,
     normals: Vec<Vec3>,
     /// First vertex of each position. `next` chains the others, which is faster than a hash map for typical files.
@@ -68,8 +77,11 @@ struct ObjReader {
     vertices: Vec<ObjVertex>,
     mesh: RawMesh,
     corners: Vec<u32>,
-    /// Name of the current object.
-    object: String,
+    /// True if a number of a position, normal or texture coordinate is infinite or NaN.
+    has_odd_numbers: bool,
+    faults: Faults,
+    /// What the name of the current object may be.
+    object: Vec<String>,
     /// Names of the current groups.
     groups: Vec<String>,
     /// True if the selection contains the current object or groups.
@@ -84,28 +96,59 @@ struct ObjVertex {
     next: u32,
 }
 
-impl ObjReader {
+impl<'a> ObjReader<'a> {
+    fn new(path: &'a Path, selected: bool) -> ObjReader<'a> {
+        ObjReader {
+            path,
+            positions: Vec::new(),
+            colours: Vec::new(),
+            colour_line: 0,
+            uvs: Vec::new(),
+            normals: Vec::new(),
+            first: Vec::new(),
+            crowded: HashMap::new(),
+            vertices: Vec::new(),
+            mesh: RawMesh::default(),
+            corners: Vec::new(),
+            has_odd_numbers: false,
+            faults: Faults::default(),
+            object: Vec::new(),
+            groups: Vec::new(),
+            selected,
+            unread: UnreadKeywords::default(),
+        }
+    }
+
     fn statement(&mut self, statement: &[u8], line: u32, selection: &PartSelection) -> Result<(), String> {
         let (word, rest) = split_word(statement);
         match word {
-            b"v" => self.position(rest)?,
-            b"vn" => self.normals.push(DVec3::from(numbers(rest)?).as_vec3()),
+            b"v" => self.position(rest, line)?,
+            b"vn" => {
+                let normal = DVec3::from(numbers(rest)?).as_vec3();
+                self.has_odd_numbers |= !normal.is_finite();
+                self.normals.push(normal);
+            }
             b"vt" => {
                 // The second coordinate may be left out (1-D textures).
                 let [u, v] =
                     numbers(rest).or_else(|e| numbers::<1>(rest).map(|[u]| [u, 0.0]).map_err(|_| e))?;
                 // NaN stands for a corner without coordinates.
-                self.uvs
-                    .push(Vec2::new(u as f32, v as f32).map(|x| if x.is_nan() { f32::INFINITY } else { x }));
+                let uv = Vec2::new(u as f32, v as f32);
+                self.has_odd_numbers |= !uv.is_finite();
+                self.uvs.push(uv.map(|x| if x.is_nan() { f32::INFINITY } else { x }));
             }
-            b"f" | b"fo" => self.face(rest)?,
-            b"usemtl" => self.mesh.groups.push((name(rest), self.mesh.triangles.len())),
+            b"f" | b"fo" => self.face(rest, line)?,
+            b"usemtl" => {
+                let text = encodings::text(rest.trim_ascii());
+                self.mesh.groups.push((text, self.mesh.triangles.len()));
+            }
             b"o" => {
-                self.object = name(rest);
+                self.object = names(rest);
                 self.select(selection);
             }
             b"g" => {
-                self.groups = name(rest).split_whitespace().map(str::to_owned).collect();
+                self.groups = names(rest);
+                self.groups.extend(words(rest).flat_map(|word| spellings(&encodings::text(word))));
                 self.select(selection);
             }
             _ => self.unread.add(word, rest, line),
@@ -114,44 +157,99 @@ impl ObjReader {
     }
 
     /// Reads a position, and the colour after it if there are six numbers or more.
-    fn position(&mut self, rest: &[u8]) -> Result<(), String> {
-        let [x, y, z] = numbers(rest)?;
+    fn position(&mut self, rest: &[u8], line: u32) -> Result<(), String> {
+        let position = DVec3::from(numbers(rest)?);
         if is_coloured(rest) {
             let [.., r, g, b] = numbers::<6>(rest)?;
-            self.colours.resize(self.positions.len(), Rgb::ONE);
-            self.colours.push(Rgb::from([r, g, b].map(|code| srgb_to_linear(code as f32))));
+            let mut colour = Rgb::new(r as f32, g as f32, b as f32);
+            if !colour.is_finite() {
+                self.faults.add(Fault::NoColour, || Location::line(self.path, line));
+                colour = Rgb::NAN;
+            }
+            if self.colours.is_empty() {
+                self.colour_line = line;
+            }
+            self.colours.resize(self.positions.len(), Rgb::NAN);
+            self.colours.push(colour);
         }
-        self.positions.push(DVec3::new(x, y, z));
+        self.has_odd_numbers |= !position.is_finite();
+        self.positions.push(position);
         Ok(())
+    }
+
+    /// Makes the colours linear; those that are not there become white.
+    fn decode_colours(&mut self, remarks: &mut Vec<Warning>) {
+        let channels = || self.colours.iter().flat_map(|colour| colour.to_array()).filter(|c| !c.is_nan());
+        let most = channels().fold(0.0, f32::max);
+        let mut scale = 1.0;
+        if are_codes(most.into(), channels().all(|channel| channel.fract() == 0.0)) {
+            remarks.push(note_of_codes(Location::line(self.path, self.colour_line)));
+            scale = 1.0 / MAX_CODE as f32;
+        }
+        for colour in &mut self.colours {
+            let linear = Rgb::from(colour.to_array().map(|code| srgb_to_linear(code * scale)));
+            *colour = if colour.is_nan() { Rgb::ONE } else { linear };
+        }
     }
 
     fn select(&mut self, selection: &PartSelection) {
-        let is_in = |names: &[String]| names.iter().any(|n| *n == self.object || self.groups.contains(n));
+        let is_in =
+            |names: &[String]| names.iter().any(|n| self.object.contains(n) || self.groups.contains(n));
         self.selected = (selection.only.is_empty() || is_in(&selection.only)) && !is_in(&selection.except);
     }
 
-    fn face(&mut self, rest: &[u8]) -> Result<(), String> {
+    fn face(&mut self, rest: &[u8], line: u32) -> Result<(), String> {
         let mut corners = std::mem::take(&mut self.corners);
         corners.clear();
-        for token in values(rest) {
-            let mut parts = token.split(|&b| b == b'/');
-            let position = index(parts.next(), self.positions.len(), "vertex")?;
-            if position == MISSING {
-                return Err(format!("cannot read face corner \"{}\"", String::from_utf8_lossy(token)));
-            }
-            let uv = index(parts.next(), self.uvs.len(), "texture coordinate")?;
-            let normal = index(parts.next(), self.normals.len(), "normal")?;
-            corners.push(self.vertex(position, uv, normal));
-        }
-        if corners.len() < 3 {
-            return Err(format!("a face needs three corners, this one has {}", corners.len()));
-        }
-        if self.selected {
+        let fault = self.corners(rest, line, &mut corners)?;
+        let mut fault = fault.or((corners.len() < 3).then_some(Fault::FewCorners));
+        if self.selected && fault.is_none() {
             let position = |&corner: &u32| self.positions[self.vertices[corner as usize].position as usize];
-            polygon::cut(&corners, position, &mut self.mesh.triangles);
+            let is_cut = polygon::cut(&corners, position, &mut self.mesh.triangles);
+            fault = (!is_cut).then_some(Fault::Crossing);
+        }
+        if let Some(fault) = fault.filter(|_| self.selected) {
+            self.faults.add(fault, || Location::line(self.path, line));
         }
         self.corners = corners;
         Ok(())
+    }
+
+    /// Reads the corners of a face; returns why it cannot be used, if so.
+    fn corners(&mut self, rest: &[u8], line: u32, corners: &mut Vec<u32>) -> Result<Option<Fault>, String> {
+        let path = self.path;
+        let place = || Location::line(path, line);
+        for token in values(rest) {
+            let mut parts = token.split(|&b| b == b'/');
+            let position = match index(parts.next(), self.positions.len())? {
+                Index::At(position) => position,
+                Index::OutOfRange => return Ok(Some(Fault::NoSuchVertex)),
+                Index::Empty => return Err(format!("cannot read face corner \"{}\"", shown(token))),
+            };
+            let mut other = |count| match index(parts.next(), count)? {
+                Index::At(at) => Ok(at),
+                Index::Empty => Ok(MISSING),
+                Index::OutOfRange => {
+                    self.faults.add(Fault::NoSuchValue, place);
+                    Ok::<u32, String>(MISSING)
+                }
+            };
+            let uv = other(self.uvs.len())?;
+            let normal = other(self.normals.len())?;
+            if self.has_odd_numbers {
+                if !self.positions[position as usize].is_finite() {
+                    return Ok(Some(Fault::NoPosition));
+                }
+                if self.uvs.get(uv as usize).is_some_and(|uv| !uv.is_finite()) {
+                    self.faults.add(Fault::NoUv, place);
+                }
+                if self.normals.get(normal as usize).is_some_and(|normal| !normal.is_finite()) {
+                    self.faults.add(Fault::NoNormal, place);
+                }
+            }
+            corners.push(self.vertex(position, uv, normal));
+        }
+        Ok(None)
     }
 
     fn vertex(&mut self, position: u32, uv: u32, normal: u32) -> u32 {
@@ -200,17 +298,32 @@ impl ObjReader {
     }
 }
 
-/// Parses a one-based index, or one that counts back from the latest if negative; `MISSING` for an empty one.
-fn index(token: Option<&[u8]>, count: usize, what: &str) -> Result<u32, String> {
-    let Some(token) = token.filter(|t| !t.is_empty()) else { return Ok(MISSING) };
-    let text = String::from_utf8_lossy(token);
-    let value: i64 = text.parse().map_err(|_| format!("cannot read the index \"{text}\""))?;
+/// Returns the names by which scenes may call an object or a group.
+fn names(rest: &[u8]) -> Vec<String> {
+    let [all, default] = [encodings::text(rest.trim_ascii()), name(rest)];
+    [all, default].iter().flat_map(|name| spellings(name)).collect()
+}
+
+/// An index of a corner, counted from 0.
+enum Index {
+    At(u32),
+    OutOfRange,
+    Empty,
+}
+
+/// Parses a one-based index, or one that counts back from the latest if negative.
+fn index(token: Option<&[u8]>, count: usize) -> Result<Index, String> {
+    let Some(token) = token.filter(|t| !t.is_empty()) else { return Ok(Index::Empty) };
+    let text = std::str::from_utf8(token).ok();
+    let value: i64 = text
+        .and_then(|text| text.parse().ok())
+        .ok_or_else(|| format!("cannot read the index \"{}\"", shown(token)))?;
     let count = count as i64;
-    let zero_based = if value > 0 { value - 1 } else { count + value };
+    let zero_based = if value > 0 { value - 1 } else { count.saturating_add(value) };
     if value == 0 || zero_based < 0 || zero_based >= count.min(MISSING as i64) {
-        return Err(format!("{what} {value} does not exist: {count} are defined so far"));
+        return Ok(Index::OutOfRange);
     }
-    Ok(zero_based as u32)
+    Ok(Index::At(zero_based as u32))
 }
 
 #[cfg(test)]
@@ -280,11 +393,11 @@ mod tests {
         for end in ["\n", "\r\n"] {
             let mesh = read_text(&text.replace('\n', end)).unwrap();
             assert_eq!(mesh.triangles, [[0, 1, 2], [3, 4, 5]]);
-            assert_eq!(mesh.groups, [("dark oak".to_owned(), 0)]);
+            assert_eq!(mesh.groups, [("dark oak # wood".to_owned(), 0)]);
             assert!(mesh.uvs[..3].iter().all(|uv| *uv == Vec2::ZERO) && mesh.uvs[3].is_nan());
         }
-        let message = read_text("v 0 0 \\\n 0\n\nf 1 \\\n 2 3 # far\n").unwrap_err();
-        assert!(message.contains("t.obj:4:") && message.contains("vertex 2"), "{message}");
+        let message = read_text("v 0 0 \\\n 0\n\nf 1 \\\n 2 / # far\n").unwrap_err();
+        assert!(message.contains("t.obj:4:") && message.contains("face corner"), "{message}");
     }
 
     #[test]
@@ -295,15 +408,89 @@ mod tests {
         assert_eq!(mesh.triangles, [[0, 1, 2], [0, 1, 3]]);
     }
 
+    /// Returns the number of triangles of a unit square with more lines behind it, and the remarks.
+    fn square_and(more: &str) -> (RawMesh, Vec<String>) {
+        let text = format!("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n{more}");
+        let mut remarks = Vec::new();
+        let mesh = read(text.as_bytes(), Path::new("t.obj"), &PartSelection::default(), &mut remarks);
+        (mesh.unwrap(), remarks.iter().map(Warning::to_string).collect())
+    }
+
+    #[test]
+    fn faces_that_cannot_be_used_are_left_out_and_named_once() {
+        for (more, said) in [
+            ("f 1 2\nf 3\nf\n", "t.obj:6: faces of less than three corners: 3, here the first"),
+            ("f 1 2 9\nf 0 1 2\nf 1 2 -9", "t.obj:6: faces with a vertex that does not exist: 3, "),
+            ("v nan 0 0\nf 1 2 5\nf 1 2 5", "t.obj:7: faces with a position that is no finite number: 2, "),
+            (
+                "v -nan(ind) 0 1.#INF\nf 5 2 1 # 5",
+                "t.obj:7: faces with a position that is no finite number: 1, ",
+            ),
+        ] {
+            let (mesh, remarks) = square_and(more);
+            assert_eq!(mesh.triangles, [[0, 1, 2], [0, 2, 3]], "{more}");
+            assert!(remarks.len() == 1 && remarks[0].starts_with(said), "{remarks:?}");
+        }
+        for unused in ["v -nan(ind) 0 0\n", "vn 1.#QNAN 0 0\n", "vt nan\n"] {
+            assert_eq!(square_and(unused).1, [""; 0], "{unused}");
+        }
+    }
+
+    #[test]
+    fn values_of_corners_that_cannot_be_used_are_named_and_the_face_stays() {
+        for (more, said) in [
+            (
+                "f 1/1 2 3\nf 1//7 2 3",
+                "t.obj:6: corners with a texture coordinate or normal that does not exist: 2",
+            ),
+            ("vn -1.#IND 0 0\nf 1//1 2 3", "t.obj:7: corners with a normal that is no finite number: 1, "),
+            (
+                "vt 0 0\nvt 1.#QNAN 0\nf 1/1 2/2 3/1",
+                "t.obj:8: corners with texture coordinates that are no finite",
+            ),
+        ] {
+            let (mesh, remarks) = square_and(more);
+            assert!(mesh.triangles.len() >= 3, "{more}");
+            assert!(remarks.len() == 1 && remarks[0].starts_with(said), "{remarks:?}");
+        }
+    }
+
+    #[test]
+    fn colours_of_whole_numbers_above_1_go_up_to_255() {
+        let colours = |codes: [&str; 3]| {
+            let lines = codes.map(|code| format!("v 0 0 0 {code}\n")).concat();
+            let (mesh, remarks) = square_and(&format!("{lines}f 5 6 7\n"));
+            (mesh.attributes[0].values.all()[4..].to_vec(), remarks)
+        };
+        let (bytes, remarks) = colours(["51 102 204", "0 0 1", "255 255 255"]);
+        assert!((bytes[0] - Rgb::new(0.0331, 0.1329, 0.6038)).length() < 1e-3, "{bytes:?}");
+        assert_eq!(bytes[2], Rgb::ONE);
+        assert!(remarks.len() == 1 && remarks[0].starts_with("t.obj:6: the colours"), "{remarks:?}");
+        let (fractions, remarks) = colours(["1 0 1", "0 0 0", "0.5 1 1"]);
+        assert!(fractions[0] == Rgb::new(1.0, 0.0, 1.0) && remarks.is_empty(), "{fractions:?}");
+        let (odd, remarks) = colours(["nan 0 0", "1 1 1", "0 0 0"]);
+        assert!(odd[0] == Rgb::ONE && remarks[0].contains("vertices with a colour"), "{odd:?} {remarks:?}");
+    }
+
+    #[test]
+    fn objects_whose_names_hold_marks_are_chosen() {
+        let text = b"v 0 0 0\nv 1 0 0\nv 0 1 0\no Lamp #1 # left\nf 1 2 3\no Lamp #2\nf 3 2 1\nf 3 2 1\no \xBA\xEC\n\
+            f 1 2 3\nf 1 2 3\nf 1 2 3\ng a b #c\nf 1 2 3\nf 1 2 3\nf 1 2 3\nf 1 2 3\n";
+        for (name, count) in
+            [("Lamp #1", 1), ("Lamp #2", 2), ("Lamp #1 # left", 1), ("红", 7), ("a b #c", 4), ("b", 4)]
+        {
+            let selection = PartSelection { only: vec![name.to_owned()], except: vec![] };
+            let mesh = read(text, Path::new("t.obj"), &selection, &mut Vec::new()).unwrap();
+            assert_eq!(mesh.triangles.len(), count, "{name}");
+        }
+    }
+
     #[test]
     fn errors_name_the_line_and_what_is_wrong() {
         for (text, line, what) in [
-            ("v 0 0 0\nf 1 1 2\n", 2, "vertex 2 does not exist"),
             ("v 0 0\n", 1, "expected 3 numbers"),
             ("v 0 0 zero\n", 1, "\"zero\""),
-            ("\n\nv 1 2 3\nf 1 1\n", 4, "three corners"),
-            ("v 1 2 3\nf 1/1 1 1\n", 2, "texture coordinate 1"),
-            ("v 1 2 3\nf 0 1 1\n", 2, "vertex 0"),
+            ("v 1 2 3\nf 1/x 1 1\n", 2, "index \"x\""),
             ("v 1 2 3\nf /1 1 1\n", 2, "face corner"),
         ] {
             let message = read_text(text).unwrap_err();

@@ -1,7 +1,8 @@
 //! Names that an OBJ file refers to: material libraries and materials.
 
-use super::wavefront::{is_coloured, name, split_word, statements};
-use std::collections::BTreeSet;
+use super::encodings;
+use super::wavefront::{is_coloured, name, readings, split_word, statements};
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
 
 /// Names that an OBJ file refers to.
@@ -9,7 +10,7 @@ use std::path::PathBuf;
 pub(crate) struct References {
     /// Texts of `mtllib` statements with their lines, in order.
     pub libraries: Vec<(u32, String)>,
-    /// Names of the materials that the faces use.
+    /// Texts that name the materials of the faces. They may hold comments.
     pub materials: BTreeSet<String>,
     /// True if a position has a colour.
     pub has_colours: bool,
@@ -21,13 +22,13 @@ pub(crate) fn references(bytes: &[u8]) -> References {
     for (line, statement) in statements(bytes) {
         match split_word(&statement) {
             (b"mtllib", rest) => {
-                let text = String::from_utf8_lossy(rest).trim().to_owned();
+                let text = encodings::text(rest.trim_ascii());
                 if !found.libraries.iter().any(|library| library.1 == text) {
                     found.libraries.push((line, text));
                 }
             }
             (b"usemtl", rest) => {
-                found.materials.insert(name(rest));
+                found.materials.insert(encodings::text(rest.trim_ascii()));
             }
             (b"v", rest) if !found.has_colours => found.has_colours = is_coloured(rest),
             _ => {}
@@ -41,8 +42,8 @@ const MAX_WORDS: usize = 16;
 
 /// Returns the files that the text of a statement names; `find` returns the path of a file that exists.
 ///
-/// Names may hold spaces, and a statement may list several. So the longest name that exists counts. Names of files that
-/// do not exist end at their extension; their places hold the name.
+/// Names may hold spaces and `#`, and a statement may list several. So the longest name that exists counts. Names of
+/// files that do not exist end at their extension; their places hold the name.
 pub(crate) fn listed_files(
     text: &str,
     extension: &str,
@@ -52,10 +53,20 @@ pub(crate) fn listed_files(
     if let Some(path) = find(text) {
         return vec![Ok(path)];
     }
-    let text = &name(text.as_bytes());
+    let mut lists = readings(text.as_bytes()).into_iter().map(|text| split_files(&text, extension, &find));
+    let complete = lists.find(|list| !list.is_empty() && list.iter().all(Result::is_ok));
+    complete.unwrap_or_else(|| split_files(&name(text.as_bytes()), extension, &find))
+}
+
+/// Returns the files that a text without a comment lists.
+fn split_files(
+    text: &str,
+    extension: &str,
+    find: impl Fn(&str) -> Option<PathBuf>,
+) -> Vec<Result<PathBuf, String>> {
     let mut ends = Vec::new();
     let mut starts = Vec::new();
-    for word in text.split_whitespace() {
+    for word in text.split_ascii_whitespace() {
         let start = word.as_ptr() as usize - text.as_ptr() as usize;
         starts.push(start);
         ends.push(start + word.len());
@@ -79,6 +90,45 @@ pub(crate) fn listed_files(
     files
 }
 
+/// Definitions of material libraries by what their names may be.
+#[derive(Debug, Default)]
+pub(crate) struct Definitions {
+    whole: BTreeMap<String, usize>,
+    /// Names before a comment; `None` if several definitions may have the name.
+    short: BTreeMap<String, Option<usize>>,
+    count: usize,
+}
+
+impl Definitions {
+    /// Adds a library with the texts of its definitions. Texts that an earlier library defines do not count.
+    pub fn add<'a>(&mut self, library: impl Iterator<Item = &'a str>) {
+        let first = self.count;
+        for text in library {
+            let number = self.count;
+            self.count += 1;
+            let known = self.whole.insert(text.to_owned(), number);
+            if let Some(known) = known.filter(|known| *known < first) {
+                self.whole.insert(text.to_owned(), known);
+                continue;
+            }
+            for name in readings(text.as_bytes()).into_iter().skip(1) {
+                let of = self.short.entry(name).or_insert(Some(number));
+                *of = of.filter(|other| *other == number || known == Some(*other)).map(|_| number);
+            }
+        }
+    }
+
+    /// Returns the name that a text means, which may have a comment behind it, and the number of its definition.
+    ///
+    /// The longest name that is defined counts.
+    pub fn find(&self, text: &str) -> Option<(String, usize)> {
+        readings(text.as_bytes()).into_iter().find_map(|name| {
+            let number = self.whole.get(&name).copied().or_else(|| self.short.get(&name).copied().flatten());
+            Some((name, number?))
+        })
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -98,6 +148,9 @@ mod tests {
             ("walls.mtl trim.mtl", &["walls.mtl", "trim.mtl"][..]),
             ("walls.mtl  dark oak.mtl\ttrim.mtl # made by hand", &["walls.mtl", "dark oak.mtl", "trim.mtl"]),
             ("a #2.mtl", &["a #2.mtl"]),
+            ("walls.mtl a #2.mtl # both", &["walls.mtl", "a #2.mtl"]),
+            ("walls.mtl #old", &["walls.mtl"]),
+            ("b #2.mtl # new", &["no b #2.mtl"]),
             ("my room.mtl walls.mtl", &["no my room.mtl", "walls.mtl"]),
             ("room", &["room"]),
             ("My Room.MTL", &["no My Room.MTL"]),
@@ -109,11 +162,38 @@ mod tests {
     }
 
     #[test]
+    fn materials_are_told_apart_by_which_are_defined() {
+        let all =
+            ["Material #25", "Material #26", "oak # old", "brick", "Paint\t#1", "a # 1", "a # 2", "#ff0000"];
+        let mut definitions = Definitions::default();
+        definitions.add(all.into_iter());
+        definitions.add(["brick", "stone"].into_iter());
+        for (text, expected) in [
+            ("Material #25", Some(0)),
+            ("Material #26 # right", Some(1)),
+            ("Material", None),
+            ("Material #27", None),
+            ("oak", Some(2)),
+            ("oak # new", Some(2)),
+            ("brick #red", Some(3)),
+            ("Paint\t#1", Some(4)),
+            ("a # 2", Some(6)),
+            ("a", None),
+            ("#ff0000", Some(7)),
+            ("stone", Some(9)),
+            ("", None),
+        ] {
+            assert_eq!(definitions.find(text).map(|found| found.1), expected, "{text}");
+        }
+        assert_eq!(definitions.find("brick #red # x"), Some(("brick".to_owned(), 3)));
+    }
+
+    #[test]
     fn references_are_listed_once_with_their_lines() {
         let text = "mtllib a.mtl\n  mtllib b.mtl \\\n c.mtl\nusemtl x # y\nmtllib a.mtl\nusemtl x\nusemtl\n";
         let found = references(text.as_bytes());
         assert_eq!(found.libraries, [(1, "a.mtl".to_owned()), (2, "b.mtl  c.mtl".to_owned())]);
-        assert_eq!(found.materials.into_iter().collect::<Vec<_>>(), ["", "x"]);
+        assert_eq!(found.materials.into_iter().collect::<Vec<_>>(), ["", "x", "x # y"]);
         assert!(!found.has_colours && references(b"v 0 0 0 1\nv 0 0 0 1 1 1 # red").has_colours);
     }
 }

@@ -6,8 +6,10 @@
 //!   `_2`, `_3` are the attribute of that name. So is one property that ends with the first of them.
 //!
 //! Integers are fractions of the maximum of their type, coded in sRGB but for `alpha`. Floating-point numbers are
-//! linear. Blender's importer has the same default.
+//! linear. Blender's importer has the same default. Colours of other types than bytes that are whole numbers above 1
+//! are bytes nonetheless.
 
+use super::faults::{MAX_CODE, are_codes};
 use crate::attributes::NamedAttribute;
 use crate::decode::srgb_to_linear;
 use base::math::Rgb;
@@ -40,6 +42,8 @@ pub(super) struct PlyAttribute {
     channels: Vec<(usize, Option<f64>)>,
     /// True if integers are coded in sRGB.
     is_coded: bool,
+    /// True for the attribute `color`.
+    is_colour: bool,
 }
 
 impl PlyAttribute {
@@ -50,40 +54,86 @@ impl PlyAttribute {
 
     /// Returns the value of an element, whose properties have the values `row`.
     pub fn value(&self, row: &[f64]) -> Rgb {
-        let channel = |&(at, max): &(usize, Option<f64>)| {
-            let value = row.get(at).copied().unwrap_or_default();
-            match max {
-                Some(max) if self.is_coded => srgb_to_linear((value / max).clamp(0.0, 1.0) as f32),
-                Some(max) => (value / max) as f32,
-                None => value as f32,
-            }
-        };
+        self.decoded(self.numbers(row))
+    }
+
+    /// Returns the numbers of the channels; one number stands for three.
+    fn numbers(&self, row: &[f64]) -> [f64; 3] {
+        let number = |&(at, _): &(usize, Option<f64>)| row.get(at).copied().unwrap_or_default();
         match &self.channels[..] {
-            [r, g, b] => Rgb::new(channel(r), channel(g), channel(b)),
-            all => Rgb::splat(all.first().map_or(0.0, channel)),
+            [r, g, b] => [r, g, b].map(number),
+            all => [all.first().map_or(0.0, number); 3],
         }
+    }
+
+    /// Returns the value of the numbers of the channels,
+    fn decoded(&self, numbers: [f64; 3]) -> Rgb {
+        let max = |i: usize| self.channels.get(i).or(self.channels.first()).and_then(|channel| channel.1);
+        let channel = |i: usize| match max(i) {
+            Some(max) if self.is_coded => srgb_to_linear((numbers[i] / max).clamp(0.0, 1.0) as f32),
+            Some(max) => (numbers[i] / max) as f32,
+            None => numbers[i] as f32,
+        };
+        Rgb::new(channel(0), channel(1), channel(2))
+    }
+
+    /// True if the numbers may be bytes in another type.
+    fn may_be_codes(&self) -> bool {
+        self.is_colour && self.channels.iter().all(|channel| channel.1.is_none_or(|max| max > MAX_CODE))
     }
 }
 
 /// Attributes of an element, with the values read so far.
-pub(super) struct CollectedAttributes(Vec<(PlyAttribute, Vec<Rgb>)>);
+pub(super) struct CollectedAttributes(Vec<CollectedAttribute>);
+
+struct CollectedAttribute {
+    of: PlyAttribute,
+    values: Vec<Rgb>,
+    /// Greatest value.
+    most: f32,
+    /// True if all values are whole numbers.
+    are_whole: bool,
+}
 
 impl CollectedAttributes {
     /// Prepares to collect the values of attributes.
     pub fn new(attributes: Vec<PlyAttribute>) -> CollectedAttributes {
-        CollectedAttributes(attributes.into_iter().map(|attribute| (attribute, Vec::new())).collect())
+        let empty = |of| CollectedAttribute { of, values: Vec::new(), most: 0.0, are_whole: true };
+        CollectedAttributes(attributes.into_iter().map(empty).collect())
     }
 
-    /// Adds, `count` times, the values of an element whose properties have the values `row`.
-    pub fn push(&mut self, row: &[f64], count: usize) {
-        for (attribute, values) in &mut self.0 {
-            values.extend(std::iter::repeat_n(attribute.value(row), count));
+    /// Adds, `count` times, the values of an element whose properties have the values `row`. Returns false if one is
+    /// not finite; it becomes white.
+    pub fn push(&mut self, row: &[f64], count: usize) -> bool {
+        let mut are_finite = true;
+        for CollectedAttribute { of, values, most, are_whole } in &mut self.0 {
+            let numbers = of.numbers(row);
+            let mut value =
+                if of.may_be_codes() { Rgb::from(numbers.map(|n| n as f32)) } else { of.decoded(numbers) };
+            if !value.is_finite() {
+                (value, are_finite) = (Rgb::ONE, false);
+            }
+            *most = value.max_element().max(*most);
+            *are_whole &= value.fract() == Rgb::ZERO;
+            values.extend(std::iter::repeat_n(value, count));
         }
+        are_finite
     }
 
-    /// Returns the attributes; `values` makes their values.
-    pub fn finish(self, values: fn(Vec<Rgb>) -> AttributeValues) -> impl Iterator<Item = NamedAttribute> {
-        self.0.into_iter().map(move |(of, all)| NamedAttribute { name: of.name, values: values(all) })
+    /// Returns the attributes, and whether one has bytes in another type; `values` makes their values.
+    pub fn finish(self, values: fn(Vec<Rgb>) -> AttributeValues) -> (Vec<NamedAttribute>, bool) {
+        let mut has_codes = false;
+        let finish = |CollectedAttribute { mut of, values: mut all, most, are_whole }: CollectedAttribute| {
+            if of.may_be_codes() {
+                if are_codes(most.into(), are_whole) {
+                    has_codes = true;
+                    of.channels.iter_mut().for_each(|channel| channel.1 = Some(MAX_CODE));
+                }
+                all.iter_mut().for_each(|value| *value = of.decoded(value.as_dvec3().to_array()));
+            }
+            NamedAttribute { name: of.name, values: values(all) }
+        };
+        (self.0.into_iter().map(finish).collect(), has_codes)
     }
 }
 
@@ -103,11 +153,13 @@ pub(super) fn max_of_type(name: &str) -> Option<f64> {
 /// Returns the attributes among the properties of an element, which are `None` where they are lists. `prefix` is that
 /// of the attributes' names.
 pub(super) fn attributes(prefix: &str, properties: &[Option<ChannelProperty>]) -> Vec<PlyAttribute> {
-    let find = |name: &str| properties.iter().position(|p| p.is_some_and(|p| p.name == name));
+    let find =
+        |name: &str| properties.iter().position(|p| p.is_some_and(|p| p.name.eq_ignore_ascii_case(name)));
     let attribute = |name: &str, at: &[usize], is_coded| PlyAttribute {
         name: format!("{prefix}{name}"),
         channels: at.iter().map(|&at| (at, properties[at].and_then(|p| p.max))).collect(),
         is_coded,
+        is_colour: name == "color",
     };
     let mut all = Vec::new();
     for (names, alpha) in COLOURS {

@@ -1,6 +1,7 @@
 //! Elements and properties of PLY files: those that are read, and names of those that are not.
 
 use super::ply_attributes::{ChannelProperty, attributes};
+use super::ply_header::line_end;
 use crate::error::{Location, Warning};
 use crate::statements::{Fate, Statement};
 use std::path::Path;
@@ -92,7 +93,8 @@ fn note(name: &str) -> Option<&'static str> {
 /// Parses the elements of a valid header.
 fn elements(header: &str) -> Vec<HeaderElement<'_>> {
     let mut elements: Vec<HeaderElement> = Vec::new();
-    for (line, text) in (1..).zip(header.split('\n')) {
+    let line_end = char::from(line_end(header.as_bytes()));
+    for (line, text) in (1..).zip(header.split(line_end)) {
         let words: Vec<&str> = text.split_whitespace().collect();
         match (words[..].iter().as_slice(), elements.last_mut()) {
             (["element", name, count], _) => {
@@ -111,7 +113,9 @@ fn elements(header: &str) -> Vec<HeaderElement<'_>> {
 /// Returns the fate of each property of vertices or faces.
 fn fates(element: &HeaderElement) -> Vec<Fate> {
     let properties = &element.properties;
-    let find = |names: &[&str]| properties.iter().position(|(_, name, _)| names.contains(name));
+    let find = |names: &[&str]| {
+        properties.iter().position(|(_, name, _)| names.iter().any(|known| known.eq_ignore_ascii_case(name)))
+    };
     // Groups of properties that are read if all exist.
     let groups = [
         ["x", "y", "z"].map(|name| find(&[name])).to_vec(),
@@ -129,7 +133,10 @@ fn fates(element: &HeaderElement) -> Vec<Fate> {
     let is_read = |at: usize| match element.name {
         _ if of_attributes.contains(&at) => true,
         "vertex" => groups.iter().any(|group| group.iter().all(Option::is_some) && group.contains(&Some(at))),
-        _ => properties[at].2 && ["vertex_index", "vertex_indices"].contains(&properties[at].1),
+        _ => {
+            let is_it = |name: &&str| name.eq_ignore_ascii_case(properties[at].1);
+            properties[at].2 && ["vertex_index", "vertex_indices"].iter().any(is_it)
+        }
     };
     (0..properties.len()).map(|at| if is_read(at) { Fate::Read } else { Fate::Named }).collect()
 }

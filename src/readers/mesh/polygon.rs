@@ -8,7 +8,8 @@ use glam::{DMat3, DVec2, DVec3};
 const MAX_CLIPPED: usize = 10_000;
 
 /// Adds the triangles of a polygon of at least three corners; `position` returns the position of a corner.
-pub(super) fn cut(corners: &[u32], position: impl Fn(&u32) -> DVec3, triangles: &mut Vec<[u32; 3]>) {
+/// Returns false if its inside is not found.
+pub(super) fn cut(corners: &[u32], position: impl Fn(&u32) -> DVec3, triangles: &mut Vec<[u32; 3]>) -> bool {
     if corners.len() > 3 && corners.len() <= MAX_CLIPPED {
         let points: Vec<DVec3> = corners.iter().map(position).collect();
         if let Some(flat) = flattened(&points).filter(|flat| !is_convex(flat)) {
@@ -23,11 +24,12 @@ pub(super) fn cut(corners: &[u32], position: impl Fn(&u32) -> DVec3, triangles: 
                         _ => [corner(e[0]), corner(e[1]), corner(e[2])],
                     }
                 }));
-                return;
+                return true;
             }
         }
     }
     triangles.extend(corners[1..].windows(2).map(|w| [corners[0], w[0], w[1]]));
+    true
 }
 
 /// Returns the polygon in the plane across its mean normal, counter-clockwise; `None` without area.

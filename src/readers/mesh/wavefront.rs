@@ -1,8 +1,10 @@
 //! Statements of Wavefront's text formats, OBJ and MTL: lines, continued lines, comments and names.
 //!
 //! A backslash at the end of a line joins it with the next. A comment begins with `#` at the start of a line or behind
-//! white space, and is never continued.
+//! white space, and is never continued. Names may hold such a `#`, too: [`readings`] lists what a name may be.
 
+use super::encodings::{ends_in_letter, text};
+use super::numerals::{self, is_in_number};
 use std::borrow::Cow;
 
 /// Iterator over statements, with the number of each one's first line, counted from 1.
@@ -55,13 +57,13 @@ impl<'a, L: Iterator<Item = &'a [u8]>> Iterator for Statements<'a, L> {
 
 /// Returns a line without the backslash that joins it with the next one; `None` if it has none.
 fn continued(line: &[u8]) -> Option<&[u8]> {
-    line.strip_suffix(b"\\").filter(|start| comment(start).is_none())
+    line.strip_suffix(b"\\").filter(|start| comments(start).next().is_none() && !ends_in_letter(line))
 }
 
-/// Returns the position at which a comment begins.
-fn comment(text: &[u8]) -> Option<usize> {
+/// Returns the positions at which a comment may begin.
+fn comments(text: &[u8]) -> impl Iterator<Item = usize> {
     let begins = |i: &usize| text[*i] == b'#' && (*i == 0 || text[*i - 1].is_ascii_whitespace());
-    (0..text.len()).find(begins)
+    (0..text.len()).filter(begins)
 }
 
 /// Returns the first word of a statement, and the rest.
@@ -75,16 +77,30 @@ pub(super) fn words(text: &[u8]) -> impl Iterator<Item = &[u8]> {
     text.split(|b| b.is_ascii_whitespace()).filter(|word| !word.is_empty())
 }
 
-/// Returns the words of a text without a comment, which begins at any `#`: for numbers, which hold none.
+/// Returns the words of a text without a comment, which begins at any `#` outside a number.
 pub(super) fn values(text: &[u8]) -> impl Iterator<Item = &[u8]> {
-    let end = text.iter().position(|&b| b == b'#').unwrap_or(text.len());
+    let mut marks = (0..text.len()).filter(|&i| text[i] == b'#');
+    let end = marks.find(|&i| !is_in_number(text, i)).unwrap_or(text.len());
     words(&text[..end])
 }
 
-/// Returns a name that may hold spaces, without a comment behind it.
-pub(super) fn name(rest: &[u8]) -> String {
-    let end = comment(rest).unwrap_or(rest.len());
-    String::from_utf8_lossy(&rest[..end]).trim().to_owned()
+/// Returns what a name may be, which may hold spaces: all of the text, and the text before each possible comment. The
+/// longest is the first.
+pub(crate) fn readings(rest: &[u8]) -> Vec<String> {
+    let rest = rest.trim_ascii();
+    let cut = comments(rest).map(|at| rest[..at].trim_ascii_end());
+    let mut all: Vec<String> = cut.chain([rest]).map(text).collect();
+    all.reverse();
+    all
+}
+
+/// Returns a name that nothing else tells about. A `#` before a letter or digit is a part of it, as in `Material #25`;
+/// a `#` alone begins a comment.
+pub(crate) fn name(rest: &[u8]) -> String {
+    let rest = rest.trim_ascii();
+    let is_alone = |at: &usize| rest.get(at + 1).is_none_or(u8::is_ascii_whitespace);
+    let end = comments(rest).find(is_alone).unwrap_or(rest.len());
+    text(rest[..end].trim_ascii_end())
 }
 
 /// Returns a word for a message: its first characters, those that are not UTF-8 replaced.
@@ -93,15 +109,14 @@ pub(super) fn shown(word: &[u8]) -> String {
     String::from_utf8_lossy(&word[..word.len().min(MAX_SHOWN)]).into_owned()
 }
 
-/// Parses the first `N` numbers of a text. Further words are ignored.
+/// Parses the first `N` numbers of a text, which may be infinite or NaN. Further words are ignored.
 pub(super) fn numbers<const N: usize>(rest: &[u8]) -> Result<[f64; N], String> {
     let mut values = [0.0; N];
     let mut words = self::values(rest);
     for value in &mut values {
         let word = words.next().ok_or_else(|| format!("expected {N} numbers"))?;
-        let text = std::str::from_utf8(word).ok();
-        let bad = || format!("cannot read the number \"{}\"", String::from_utf8_lossy(word));
-        *value = text.and_then(|t| t.parse().ok()).ok_or_else(bad)?;
+        let bad = || format!("cannot read the number \"{}\"", shown(word));
+        *value = numerals::number(word).ok_or_else(bad)?;
     }
     Ok(values)
 }
@@ -131,15 +146,25 @@ mod tests {
     }
 
     #[test]
-    fn names_keep_spaces_and_lose_comments() {
+    fn names_keep_spaces_and_marks_and_lose_comments() {
         for (rest, expected) in [
             (" dark oak\t", "dark oak"),
             (" brick # red", "brick"),
-            (" C#sharp#2 #3", "C#sharp#2"),
+            (" C#sharp#2 #3", "C#sharp#2 #3"),
+            (" Paint\t#1 #", "Paint\t#1"),
+            (" #ff0000", "#ff0000"),
             (" # none", ""),
             ("", ""),
         ] {
             assert_eq!(name(rest.as_bytes()), expected);
         }
+        assert_eq!(readings(b" a #1 # b "), ["a #1 # b", "a #1", "a"]);
+        assert_eq!(readings(b""), [""]);
+    }
+
+    #[test]
+    fn numbers_may_hold_a_mark() {
+        let [a, b, c] = numbers(b"1.#QNAN -1.#INF 2.#third").unwrap();
+        assert!(a.is_nan() && b == f64::NEG_INFINITY && c == 2.0);
     }
 }

@@ -58,8 +58,8 @@ impl<'b, 'a> LibraryReader<'b, 'a> {
         LibraryReader { builder, file, unit, findings: Vec::new() }
     }
 
-    /// Adds a material to the plan; returns its name and appearance.
-    pub fn appearance(&mut self, mut source: ClassicMaterial) -> Result<(String, Appearance), SceneError> {
+    /// Adds a material to the plan; returns its appearance.
+    pub fn appearance(&mut self, mut source: ClassicMaterial) -> Result<Appearance, SceneError> {
         let material = self.material(&mut source)?;
         let emission = self.emission(&mut source)?;
         let material = self.builder.contents.add_material(material, source.place);
@@ -74,7 +74,7 @@ impl<'b, 'a> LibraryReader<'b, 'a> {
                 }
             }
         }
-        Ok((source.name, Appearance { material, emission }))
+        Ok(Appearance { material, emission })
     }
 
     /// Warns of the features that are not supported, each once.

@@ -1,9 +1,9 @@
 //! Maps of the classic materials of MTL files, and numbers that may have one.
 
 use super::classic::{LibraryReader, SLACK, is_principled};
-use super::mtl::{existing_file, possible_files};
+use super::mtl::{existing_file, missing_file};
 use crate::decode::{Channel, DecodedImage};
-use crate::error::{Location, SceneError, Warning};
+use crate::error::{Location, SceneError};
 use crate::file::{fnv1a, folder_of, read_file};
 use crate::mend::decode_mended;
 use crate::mesh::map_options::{MapChannel, MapOptions, parse};
@@ -154,7 +154,7 @@ impl LibraryReader<'_, '_> {
             self.lacks(source, keyword, format!("the option -bm of {keyword}"), "it is left out");
         }
         // A file that is not there is named when it is to be read.
-        let file = file.unwrap_or_else(|name| possible_files(folder, &name)[0].clone());
+        let file = file.unwrap_or_else(|name| missing_file(folder, &name));
         Ok(Some(OpenMap { file, place, options }))
     }
 

@@ -186,9 +186,9 @@ impl SceneBuilder<'_> {
         to_world: &DMat4,
     ) -> Result<MaterialPlan, SceneError> {
         let unit = DMat3::from_mat4(*to_world).determinant().abs().cbrt();
-        let (names, has_colours) = self.read_mtl(path, place, unit as f32)?;
+        let (named, has_colours) = self.read_mtl(path, place, unit as f32)?;
         let other = self.default_material(has_colours, place);
-        Ok(MaterialPlan::ByName(names, other))
+        Ok(MaterialPlan::ByName(named, other))
     }
 }
 

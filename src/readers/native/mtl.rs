@@ -5,33 +5,38 @@ use super::classic::LibraryReader;
 use crate::attributes::COLOUR;
 use crate::error::{Location, SceneError};
 use crate::file::{fnv1a, folder_of, read_file};
-use crate::mesh::mtl;
-use crate::mesh::obj_references::{References, listed_files, references};
-use crate::plan::Appearance;
+use crate::mesh::encodings::{possible_paths, spellings};
+use crate::mesh::mtl::{self, ClassicMaterial};
+use crate::mesh::obj_references::{Definitions, References, listed_files, references};
+use crate::mesh::wavefront::name;
+use crate::plan::NamedAppearances;
 use base::math::Rgb;
 use scene::{Material, MaterialId, Reflectance};
 use std::collections::{BTreeMap, BTreeSet};
+use std::iter;
 use std::path::{Path, PathBuf};
 
 impl SceneBuilder<'_> {
-    /// Reads the materials of the OBJ's libraries, by name. Returns also whether the OBJ has colours of
-    /// vertices. `unit` is the length of the file's unit in the world.
+    /// Reads the materials of the OBJ's libraries. Returns also whether the OBJ has colours of vertices. `unit` is
+    /// the length of the file's unit in the world.
     pub(super) fn read_mtl(
         &mut self,
         path: &Path,
         place: &Location,
         unit: f32,
-    ) -> Result<(BTreeMap<String, Appearance>, bool), SceneError> {
+    ) -> Result<(NamedAppearances, bool), SceneError> {
         let text = read_file(path, place)?;
         let References { libraries, materials, has_colours } = references(&text);
-        let mut appearances = BTreeMap::new();
-        let mut read = BTreeSet::new();
+        let mut read: Vec<(PathBuf, Vec<ClassicMaterial>)> = Vec::new();
+        let mut definitions = Definitions::default();
         for (line, text) in libraries {
             let from = Location::line(path, line);
             for file in listed_files(&text, ".mtl", |name| existing_file(folder_of(path), name)) {
                 match file {
-                    Ok(file) if read.insert(file.clone()) => {
-                        self.read_library(&file, &from, &materials, unit, &mut appearances)?;
+                    Ok(file) if !read.iter().any(|library| library.0 == file) => {
+                        let library = self.read_library(&file, &from)?;
+                        definitions.add(library.iter().map(|material| material.text.as_str()));
+                        read.push((file, library));
                     }
                     Ok(_) => {}
                     Err(name) => {
@@ -41,41 +46,50 @@ impl SceneBuilder<'_> {
                 }
             }
         }
-        Ok((appearances, has_colours))
+        let mut named = NamedAppearances::default();
+        let mut wanted: BTreeMap<usize, BTreeSet<String>> = BTreeMap::new();
+        for text in materials {
+            let found = definitions.find(&text);
+            let name = match found {
+                Some((name, number)) => {
+                    wanted.entry(number).or_default().insert(name.clone());
+                    name
+                }
+                None => name(text.as_bytes()),
+            };
+            if name != text {
+                named.names.insert(text, name);
+            }
+        }
+        let mut first = 0;
+        for (file, library) in read {
+            let mut reader = LibraryReader::new(self, &file, unit);
+            for material in library {
+                if let Some(names) = wanted.remove(&first) {
+                    let appearance = reader.appearance(material)?;
+                    named.appearances.extend(names.into_iter().map(|name| (name, appearance)));
+                }
+                first += 1;
+            }
+            reader.report()?;
+        }
+        Ok((named, has_colours))
     }
 
-    /// Adds the materials of a library that are used and not yet defined.
-    fn read_library(
-        &mut self,
-        file: &Path,
-        from: &Location,
-        used: &BTreeSet<String>,
-        unit: f32,
-        appearances: &mut BTreeMap<String, Appearance>,
-    ) -> Result<(), SceneError> {
+    fn read_library(&mut self, file: &Path, from: &Location) -> Result<Vec<ClassicMaterial>, SceneError> {
         let bytes = match read_file(file, from) {
             Err(SceneError::Foreign { kind, .. }) => {
                 let what = format!("the material library {} is {}", file.display(), kind.what);
-                return self.log.warn(
-                    from,
-                    what,
-                    format!("a grey of 0.5 is used for its materials; {}", kind.remedy),
-                );
+                let fallback = format!("a grey of 0.5 is used for its materials; {}", kind.remedy);
+                self.log.warn(from, what, fallback)?;
+                return Ok(Vec::new());
             }
             read => read?,
         };
         if !self.sources.iter().any(|s| s.0 == file) {
             self.sources.push((file.to_owned(), fnv1a(&bytes)));
         }
-        let materials = mtl::read(&bytes, file)?;
-        let is_wanted = |name: &String| used.contains(name) && !appearances.contains_key(name);
-        let wanted: Vec<_> = materials.into_iter().filter(|material| is_wanted(&material.name)).collect();
-        let mut reader = LibraryReader::new(self, file, unit);
-        for material in wanted {
-            let (name, appearance) = reader.appearance(material)?;
-            appearances.insert(name, appearance);
-        }
-        reader.report()
+        mtl::read(&bytes, file)
     }
 
     /// Returns the material of faces without one: diffuse, of the colours of the mesh if it has some, else grey.
@@ -96,13 +110,14 @@ impl SceneBuilder<'_> {
 ///
 /// A file beside the statement's stands for one in a folder that does not exist, as of another machine.
 pub(super) fn existing_file(folder: &Path, name: &str) -> Option<PathBuf> {
-    let [whole, last] = possible_files(folder, name);
-    [whole, last].into_iter().find(|path| path.is_file())
+    let name = name.trim_matches('"');
+    let beside =
+        spellings(name).into_iter().filter_map(|name| Some(name.rsplit(['/', '\\']).next()?.to_owned()));
+    let names = iter::once(name.to_owned()).chain(beside);
+    names.flat_map(|name| possible_paths(folder, &name)).find(|path| path.is_file())
 }
 
-/// Returns the path of the file that a statement in `folder` names, and the path of a file beside it.
-pub(super) fn possible_files(folder: &Path, name: &str) -> [PathBuf; 2] {
-    let name = name.trim_matches('"').replace('\\', "/");
-    let last = name.rsplit('/').next().unwrap_or(&name);
-    [folder.join(&name), folder.join(last)]
+/// Returns the path of a file that a statement in `folder` names, and that is not there.
+pub(super) fn missing_file(folder: &Path, name: &str) -> PathBuf {
+    folder.join(name.trim_matches('"').replace('\\', "/"))
 }
