@@ -3,7 +3,7 @@
 use super::classic::{LibraryReader, SLACK, is_principled};
 use super::mtl::{existing_file, missing_file};
 use crate::decode::{Channel, DecodedImage};
-use crate::error::{Location, SceneError};
+use crate::error::{Location, SceneError, Warning};
 use crate::file::{fnv1a, folder_of, read_file};
 use crate::mend::decode_mended;
 use crate::mesh::map_options::{MapChannel, MapOptions, parse};
