@@ -42,7 +42,7 @@ enum Realised {
     /// A texture that cannot be read.
     MissingTexture(usize, Warning),
     Environment(DecodedImage),
-    /// A warning about the file's colours or texels.
+    /// A warning about the file's colours, texels or end.
     Remark(Warning),
 }
 
@@ -314,7 +314,18 @@ fn use_file(path: &Path, tasks: &[Task], budget: &TriangleBudget) -> Result<Used
     });
     let profile = place_of_colours.and_then(|place| colour_profile::warning(&bytes, path, place));
     done.extend(profile.map(Realised::Remark));
+    if !tasks.iter().any(|task| matches!(task, Task::Mesh(..))) && is_cut_jpeg(&bytes) {
+        let what = format!("the JPEG image {} ends too early", path.display());
+        let warning = Warning::new(from.clone(), what, "its rest is grey; download or export it again");
+        done.push(Realised::Remark(warning));
+    }
     Ok((hash, done))
+}
+
+/// True for a JPEG image without the mark of its end behind the start of its last scan.
+fn is_cut_jpeg(bytes: &[u8]) -> bool {
+    let last = |mark: u8| bytes.windows(2).rposition(|pair| pair == [0xFF, mark]);
+    bytes.starts_with(&[0xFF, 0xD8, 0xFF]) && last(0xD9) < last(0xDA)
 }
 
 /// Performs a task; returns what it gives, and a warning about its texels.

@@ -82,6 +82,14 @@ pub fn read(bytes: &[u8], path: &Path) -> Result<Vec<ClassicMaterial>, SceneErro
     Ok(materials)
 }
 
+/// Returns the line of the first statement of a library, if it is in front of all materials.
+pub(crate) fn before_materials(bytes: &[u8]) -> Option<u32> {
+    let mut all = statements(bytes).filter(|(_, text)| !text.is_empty() && text[0] != b'#');
+    let (line, text) = all.next()?;
+    let word = text.split(u8::is_ascii_whitespace).next()?;
+    (!word.eq_ignore_ascii_case(b"newmtl")).then_some(line)
+}
+
 impl ClassicMaterial {
     fn new(name: &[u8], place: Location) -> ClassicMaterial {
         ClassicMaterial {

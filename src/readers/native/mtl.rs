@@ -89,6 +89,10 @@ impl SceneBuilder<'_> {
         if !self.sources.iter().any(|s| s.0 == file) {
             self.sources.push((file.to_owned(), fnv1a(&bytes)));
         }
+        if let Some(line) = mtl::before_materials(&bytes) {
+            let what = "statements stand in front of the first newmtl";
+            self.log.warn(&Location::line(file, line), what, "they are left out")?;
+        }
         mtl::read(&bytes, file)
     }
 

@@ -13,7 +13,7 @@
 use super::mutate::{Random, number_places};
 use super::target::{Workplace, without_sky};
 use super::{Extent, MEMORY, listen, seeds};
-use lightsplat::readers::{Loaded, ViewList};
+use lightsplat::readers::{LoadOptions, Loaded, ViewList};
 use std::collections::BTreeMap;
 use std::fs;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -40,7 +40,7 @@ enum Rule {
 struct Read {
     /// Everything that an image depends on.
     content: String,
-    /// Number of triangles, textures and lights, or of views.
+    /// Number of meshes, textures and lights, or of views. Polygons of other shapes have other numbers of triangles.
     amount: usize,
     /// Warnings and repairs.
     told: Vec<String>,
@@ -56,9 +56,11 @@ fn read(workplace: &Workplace, extension: &str, bytes: &[u8]) -> Result<Read, St
         let content = format!("{:?} {:x}", list.file_names(), list.hash());
         return Ok(Read { content, amount: list.file_names().len(), told });
     }
-    let loaded = workplace.load(extension, &without_sky()).map_err(|error| error.to_string())?;
+    let options = LoadOptions { most_copied: Some(0), ..without_sky() };
+    let loaded = workplace.load(extension, &options).map_err(|error| error.to_string())?;
     let Loaded { scene, cameras, warnings, repairs, .. } = loaded;
-    let amount = scene.seen_triangle_count() as usize + scene.textures.len() + scene.lights.len();
+    let meshes = scene.meshes.iter().filter(|mesh| !mesh.triangles.is_empty()).count();
+    let amount = meshes + scene.textures.len() + scene.lights.len();
     let content = format!(
         "{:?} {:?} {:?} {:?} {:?} {cameras:?}",
         scene.meshes, scene.groups, scene.materials, scene.textures, scene.lights
@@ -158,6 +160,14 @@ fn fault(before: &Read, after: &Result<Read, String>, rule: Rule) -> Option<&'st
     }
 }
 
+/// Returns the bytes around the first difference of two files.
+fn difference(whole: &[u8], damaged: &[u8]) -> String {
+    let at = whole.iter().zip(damaged).take_while(|(a, b)| a == b).count();
+    let around =
+        |bytes: &[u8]| bytes[at.saturating_sub(20)..bytes.len().min(at + 20)].escape_ascii().to_string();
+    format!("\"{}\" is \"{}\"", around(whole), around(damaged))
+}
+
 /// Tries `count` damaged files of a format, or those that the environment asks for.
 fn try_damage(format: &str, count: u64) {
     listen();
@@ -179,8 +189,8 @@ fn try_damage(format: &str, count: u64) {
     let (mut case, mut loaded) = (first, 0);
     while extent.has(case) {
         let mut random = Random::new(case);
-        let (before, extension, bytes) = random.pick(&seeds);
-        let (bytes, kind, rule) = damage(format, bytes, &mut random);
+        let (before, extension, whole) = random.pick(&seeds);
+        let (bytes, kind, rule) = damage(format, whole, &mut random);
         let begun = lightsplat::stats::Stopwatch::start();
         let after = catch_unwind(AssertUnwindSafe(|| read(&workplace, extension, &bytes)));
         let time = begun.elapsed();
@@ -194,7 +204,8 @@ fn try_damage(format: &str, count: u64) {
         if let Some(fault) = fault {
             // Numbers say nothing about the kind.
             let kind_alone: String = kind.chars().filter(|c| !c.is_ascii_digit()).collect();
-            let shown = || format!("case {case}, {extension}: {kind}: {fault}");
+            let shown =
+                || format!("case {case}, {extension}: {kind}: {fault}: {}", difference(whole, &bytes));
             wrong.entry(format!("{extension} {kind_alone} {fault}")).or_insert_with(shown);
         }
         case += 1;

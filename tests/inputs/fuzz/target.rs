@@ -92,7 +92,8 @@ impl Workplace {
         };
         // Every other case stores instances, which are copied where triangles are few.
         let length = fs::metadata(&scene).map_or(0, |file| file.len());
-        load(&scene, &LoadOptions { most_copied: length.is_multiple_of(2).then_some(0), ..options.clone() })
+        let most_copied = options.most_copied.or(length.is_multiple_of(2).then_some(0));
+        load(&scene, &LoadOptions { most_copied, ..options.clone() })
     }
 
     /// Reads the case; returns its scene, if it is a part of one that loads. Models have a sky if it is rendered.
