@@ -227,6 +227,9 @@ impl<'a> Finish<'a> {
         }
         let kept = self.kept(method, layers);
         output.extra.extend(kept);
+        if self.world.scene.hides_background {
+            clear_uncovered(&mut output);
+        }
         output
     }
 
@@ -248,11 +251,21 @@ impl<'a> Finish<'a> {
     }
 }
 
-/// Sharpens the layer of alpha as the image is, and clears pixels that are not covered.
+/// Sharpens the layer of alpha as the image is.
 fn sharpen_cover(output: &mut Output, a: f32) {
     for layer in output.extra.iter_mut().filter(|layer| layer.name == ALPHA) {
         if let Pixels::Scalar(alpha) = &mut layer.pixels {
-            *alpha = alpha.map(|alpha| Rgb::splat(*alpha)).sharpened(a).map(|alpha| alpha.x.clamp(0.0, 1.0));
+            let sharp = alpha.map(|alpha| Rgb::splat(*alpha)).sharpened(a);
+            *alpha = sharp.map(|alpha| alpha.x.clamp(0.0, 1.0));
+        }
+    }
+    clear_uncovered(output);
+}
+
+/// Clears pixels whose alpha is 0. Samples beyond those of the features may have found surfaces there.
+fn clear_uncovered(output: &mut Output) {
+    for layer in output.extra.iter().filter(|layer| layer.name == ALPHA) {
+        if let Pixels::Scalar(alpha) = &layer.pixels {
             let pixels = output.color.pixels.iter_mut().zip(&alpha.pixels);
             pixels.filter(|(_, alpha)| **alpha == 0.0).for_each(|(pixel, _)| *pixel = Rgb::ZERO);
         }
