@@ -262,7 +262,7 @@ fn sharpen_cover(output: &mut Output, a: f32) {
     clear_uncovered(output);
 }
 
-/// Clears pixels whose alpha is 0. Samples beyond those of the features may have found surfaces there.
+/// Clears pixels whose alpha is 0. Samples that features do not count may have found surfaces there.
 fn clear_uncovered(output: &mut Output) {
     for layer in output.extra.iter().filter(|layer| layer.name == ALPHA) {
         if let Pixels::Scalar(alpha) = &layer.pixels {
