@@ -85,7 +85,7 @@ impl PictureArgs {
 /// Samples that layers describe.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 enum AovMode {
-    /// Albedo, normals and position are means over the pixel; depth and ids are those of its nearest surface
+    /// Albedo, normals and position are means over the pixel; depth and ids belong to its nearest surface
     #[default]
     Mean,
     /// The first surface that the ray through the middle of the pixel hits, also if it is a mirror or glass

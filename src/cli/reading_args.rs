@@ -20,8 +20,7 @@ pub struct ReadingArgs {
     #[arg(long, value_name = "DEGREES", requires = "env", value_parser = angle)]
     env_rotate: Option<f64>,
     /// Background of the image. With none, the environment lights the scene, and appears in mirrors and through glass.
-    /// Where the camera would see it, the image is transparent: RGB and the layer A of the OpenEXR file are 0, and the
-    /// PNG has an alpha channel
+    /// Where the camera would see it, RGB and the layer A of the OpenEXR file are 0. The PNG has an alpha channel
     #[arg(long, value_enum, value_name = "BACKGROUND", default_value_t)]
     background: Background,
     /// Do not add a sky to a model without lights
