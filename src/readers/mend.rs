@@ -29,7 +29,7 @@ pub(crate) fn decode_mended(
 }
 
 /// Replacement of bad texels, and the remedy.
-const REMEDY: &str = "infinity becomes 65504 or the brightest texel, NaN the mean of its neighbours, negative light 0; \
+const REMEDY: &str = "infinity becomes 65504 or the brightest texel, NaN and negative light 0; \
     repair the image";
 
 /// Mends the texels of an image; returns how many there were, and where the first was.
@@ -43,12 +43,11 @@ fn mend(image: &mut DecodedImage, is_light: bool) -> Option<String> {
     let texels: Vec<Rgb> = image.texels.iter().collect();
     let greatest = texels.iter().flat_map(|texel| texel.to_array()).filter(|value| *value <= MAX_TEXEL);
     let infinite = greatest.fold(INFINITE, f32::max);
-    let around = Neighbours { texels: &texels, width: image.width };
     let mut mended = texels.clone();
     let bad: Vec<usize> = (0..texels.len()).filter(|i| !is_sound(texels[*i])).collect();
     for &i in &bad {
         let value = |channel: usize| match texels[i][channel] {
-            value if value.is_nan() => around.mean(i, channel),
+            value if value.is_nan() => 0.0,
             value if value > MAX_TEXEL => infinite,
             value if value < -MAX_TEXEL || is_light => value.max(0.0),
             value => value,
@@ -68,25 +67,6 @@ pub(crate) fn counted(count: usize, first: usize, width: usize, what: &str) -> S
     }
 }
 
-/// Texels of an image, row by row.
-struct Neighbours<'a> {
-    texels: &'a [Rgb],
-    width: usize,
-}
-
-impl Neighbours<'_> {
-    /// Returns the mean of the finite values of a channel around texel `i`, not negative; 0 if there are none.
-    fn mean(&self, i: usize, channel: usize) -> f32 {
-        let (x, y) = (i % self.width, i / self.width);
-        let rows = y.saturating_sub(1)..=(y + 1).min(self.texels.len() / self.width - 1);
-        let columns = x.saturating_sub(1)..=(x + 1).min(self.width - 1);
-        let around = rows.flat_map(|y| columns.clone().map(move |x| y * self.width + x));
-        let values = around.map(|at| self.texels[at][channel]).filter(|value| value.abs() <= MAX_TEXEL);
-        let (sum, count) = values.fold((0.0, 0.0), |(sum, count), value| (sum + value, count + 1.0f32));
-        (sum / count.max(1.0)).max(0.0)
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -102,7 +82,7 @@ mod tests {
     fn bad_texels_become_what_is_nearest_to_them_and_are_named() {
         let inf = f32::INFINITY;
         let (values, said) = mended([[1.0, 2.0, inf], [3.0, f32::NAN, 5.0], [6.0, -7.0, 3e38]], true);
-        assert_eq!(values, [1.0, 2.0, 65504.0, 3.0, 10.0 / 6.0, 5.0, 6.0, 0.0, 65504.0]);
+        assert_eq!(values, [1.0, 2.0, 65504.0, 3.0, 0.0, 5.0, 6.0, 0.0, 65504.0]);
         let said = said.unwrap();
         assert!(said.starts_with("4 texels are") && said.ends_with("column 3 of row 1"), "{said}");
         // A sun of 1e6 is no brighter than one of infinity.
