@@ -10,6 +10,7 @@
 
 pub(crate) mod encodings;
 mod faults;
+mod large_polygon;
 pub mod map_options;
 pub mod material_parts;
 pub mod mtl;

@@ -1,35 +1,53 @@
-//! Triangulation of polygons: fans for convex ones, else ear clipping (crate `earcut`).
+//! Triangulation of polygons: fans for convex ones, ear clipping (crate `earcut`) for others, and `large_polygon` for
+//! those of many corners, for which ear clipping takes quadratic time.
 
+use super::large_polygon;
 use base::math::unit;
 use earcut::Earcut;
 use glam::{DMat3, DVec2, DVec3};
 
-/// Number of corners beyond which a polygon counts as convex.
-const MAX_CLIPPED: usize = 10_000;
+/// Number of corners up to which ears are clipped.
+const MAX_CLIPPED: usize = 2_000;
 
-/// Adds the triangles of a polygon of at least three corners; `position` returns the position of a corner.
-/// Returns false if its inside is not found.
+/// Number of corners up to which ears of a polygon that crosses itself are clipped.
+const MAX_CROSSING: usize = 10_000;
+
+/// Adds the triangles of a polygon of at least three corners; `position` returns the position of a corner. Returns
+/// false if the inside is not searched for, because the polygon crosses itself and has too many corners.
 pub(super) fn cut(corners: &[u32], position: impl Fn(&u32) -> DVec3, triangles: &mut Vec<[u32; 3]>) -> bool {
-    if corners.len() > 3 && corners.len() <= MAX_CLIPPED {
+    let mut is_found = true;
+    if corners.len() > 3 {
         let points: Vec<DVec3> = corners.iter().map(position).collect();
         if let Some(flat) = flattened(&points).filter(|flat| !is_convex(flat)) {
-            let mut ears: Vec<u32> = Vec::new();
-            Earcut::new().earcut(flat.iter().map(|p| p.to_array()), &[], &mut ears);
-            if ears.len() >= 3 {
-                let corner = |ear: u32| corners[ear as usize];
-                // The clipper may reverse triangles.
-                triangles.extend(ears.chunks_exact(3).map(|e| {
-                    match turn([0, 1, 2].map(|k| flat[e[k] as usize])) {
-                        turn if turn < 0.0 => [corner(e[0]), corner(e[2]), corner(e[1])],
-                        _ => [corner(e[0]), corner(e[1]), corner(e[2])],
-                    }
-                }));
+            let found = inside(&flat);
+            is_found = found.is_some();
+            let found = found.unwrap_or_default();
+            if !found.is_empty() {
+                triangles.extend(found.into_iter().map(|t| t.map(|corner| corners[corner as usize])));
                 return true;
             }
         }
     }
     triangles.extend(corners[1..].windows(2).map(|w| [corners[0], w[0], w[1]]));
-    true
+    is_found
+}
+
+/// Returns the triangles of a polygon that is not convex; `None` if it crosses itself and has too many corners.
+fn inside(flat: &[DVec2]) -> Option<Vec<[u32; 3]>> {
+    if flat.len() > MAX_CLIPPED {
+        let triangles = large_polygon::triangles(flat);
+        if triangles.is_some() || flat.len() > MAX_CROSSING {
+            return triangles;
+        }
+    }
+    let mut ears: Vec<u32> = Vec::new();
+    Earcut::new().earcut(flat.iter().map(|p| p.to_array()), &[], &mut ears);
+    // The clipper may reverse triangles.
+    let oriented = |e: &[u32]| match turn([0, 1, 2].map(|k| flat[e[k] as usize])) {
+        turn if turn < 0.0 => [e[0], e[2], e[1]],
+        _ => [e[0], e[1], e[2]],
+    };
+    Some(ears.chunks_exact(3).map(oriented).collect())
 }
 
 /// Returns the polygon in the plane across its mean normal, counter-clockwise; `None` without area.
@@ -95,5 +113,57 @@ mod tests {
         cut(&[0, 1, 2, 3], |_| DVec3::NAN, &mut triangles);
         assert_eq!(triangles.len(), 2);
         assert_eq!(cut_all(&points(&[[0.0, 0.0], [2.0, 0.0], [1.0, 0.0], [3.0, 0.0]])).0.len(), 2);
+    }
+
+    /// Returns a comb of `teeth` teeth, 1 long, on a back of 2 x 1.
+    fn comb(teeth: usize) -> Vec<DVec3> {
+        let width = 2.0 / (2 * teeth - 1) as f64;
+        let mut flat = vec![[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0]];
+        for gap in 0..teeth - 1 {
+            let [right, left] = [1, 2].map(|k| 1.0 - width * (2 * gap + k) as f64);
+            flat.extend([[right, 1.0], [right, 0.0], [left, 0.0], [left, 1.0]]);
+        }
+        flat.push([-1.0, 1.0]);
+        points(&flat)
+    }
+
+    #[test]
+    fn combs_of_any_size_keep_their_gaps() {
+        for teeth in [10, 400, 2_521, 25_000] {
+            let start = std::time::Instant::now();
+            let (triangles, area) = cut_all(&comb(teeth));
+            let expected = 2.0 + 2.0 * teeth as f64 / (2 * teeth - 1) as f64;
+            assert!((area - expected).abs() < 1e-9, "{teeth}: {area}, not {expected}");
+            assert_eq!(triangles.len(), 4 * teeth - 2);
+            assert!(start.elapsed().as_secs_f64() < 10.0, "{teeth}");
+        }
+    }
+
+    #[test]
+    fn holes_and_spikes_of_large_polygons_are_kept() {
+        let ring = |radius: f64, sign: f64| {
+            (0..3_000).map(move |i| {
+                let (sin, cos) = (sign * f64::from(i) / 3_000.0 * std::f64::consts::TAU).sin_cos();
+                [radius * cos, radius * sin]
+            })
+        };
+        // A bridge leads from the outer ring to the hole and back, and a spike out and back.
+        let mut flat: Vec<[f64; 2]> = ring(2.0, 1.0).chain([[2.0, 0.0]]).collect();
+        flat.extend(ring(1.0, -1.0).chain([[1.0, 0.0], [2.0, 0.0], [3.0, 0.0]]));
+        let area = |radius: f64| 1_500.0 * radius * radius * (std::f64::consts::TAU / 3_000.0).sin();
+        let expected = area(2.0) - area(1.0);
+        let found = cut_all(&points(&flat)).1;
+        assert!((found - expected).abs() < 1e-9, "{found}, not {expected}");
+    }
+
+    #[test]
+    fn large_polygons_that_cross_themselves_are_told() {
+        for (teeth, expected) in [(20, true), (600, true), (2_600, false)] {
+            let mut points = comb(teeth);
+            points.swap(4, 5);
+            let corners: Vec<u32> = (0..points.len() as u32).collect();
+            let is_found = cut(&corners, |&corner| points[corner as usize], &mut Vec::new());
+            assert_eq!(is_found, expected, "{teeth}");
+        }
     }
 }
