@@ -19,6 +19,8 @@ mod numerals;
 pub mod obj;
 pub mod obj_references;
 mod obj_statements;
+#[cfg(test)]
+mod obj_tests;
 pub mod ply;
 mod ply_attributes;
 mod ply_contents;
