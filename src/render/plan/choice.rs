@@ -274,7 +274,7 @@ mod tests {
         let series =
             |choosers: &[Chooser], of_still| Chooser::for_series(choosers, &cache, of_still).unwrap();
         let lone = series(std::slice::from_ref(&noisy), 1.0);
-        assert!((lone.method, lone.ahead) == (alone.method, alone.ahead));
+        assert!((lone.method.name(), lone.ahead) == (alone.method.name(), alone.ahead));
         let both = [calm, noisy];
         let is_path = |of_still: f64| is_path(&series(&both, of_still));
         assert!(is_path(1e3) && !is_path(1e-3));
