@@ -112,7 +112,8 @@ fn say(kind: &str, text: &str) {
     }
 }
 
-/// Writes text to stdout. Characters that act on a terminal are escaped. A reader that has closed the pipe (`| head`) is no error.
+/// Writes text to stdout. Characters that act on a terminal are escaped. A reader that has closed the pipe
+/// (`| head`) is no error.
 pub fn print(text: &str) -> Result<(), Failure> {
     print_bytes(shown(text).as_bytes())
 }

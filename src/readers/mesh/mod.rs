@@ -33,6 +33,7 @@ pub mod shapes;
 mod smooth;
 pub mod stl;
 mod stl_colours;
+mod stl_soup;
 mod stl_statements;
 mod stl_text;
 pub(crate) mod wavefront;

@@ -53,6 +53,7 @@ impl PlyAttribute {
     }
 
     /// Returns the value of an element, whose properties have the values `row`.
+    #[cfg(test)]
     pub fn value(&self, row: &[f64]) -> Rgb {
         self.decoded(self.numbers(row))
     }

@@ -6,18 +6,15 @@
 //! `solid`. Of a file of another length, all triangles that are there are read. Reason against `stl_io` 0.11: it takes
 //! such files, which common exporters write, for text or for broken.
 
+use super::stl_soup::{RECORD, SoupBuilder};
 use super::{RawMesh, stl_colours, stl_text};
 use crate::attributes::{FACE_COLOUR, NamedAttribute};
 use crate::error::{Location, SceneError, Warning};
-use glam::DVec3;
 use scene::AttributeValues;
-use std::collections::HashMap;
 use std::path::Path;
 
 /// Bytes before the number of triangles.
 pub(super) const HEADER: usize = 80;
-/// Bytes per triangle: normal, corners and two bytes of attributes.
-pub(super) const RECORD: usize = 50;
 /// Bytes at the start that tell a text from a binary file.
 const HEAD: usize = 1024;
 /// Coordinates of a triangle that the header does not count: zero, or a magnitude in this range.
@@ -112,29 +109,6 @@ fn corners(record: &[u8; RECORD]) -> [[f32; 3]; 3] {
 fn number(record: &[u8; RECORD], at: usize) -> f32 {
     let bytes = record.get(at..at + 4).and_then(|bytes| bytes.try_into().ok());
     f32::from_le_bytes(bytes.unwrap_or_default())
-}
-
-/// Builder of a mesh of triangles, whose corners at the same position become one vertex.
-#[derive(Default)]
-pub(super) struct SoupBuilder {
-    pub mesh: RawMesh,
-    /// Vertex at each position, by the bits of its coordinates.
-    vertices: HashMap<[u32; 3], u32>,
-}
-
-impl SoupBuilder {
-    /// Adds a triangle.
-    pub fn triangle(&mut self, corners: [[f32; 3]; 3]) {
-        let triangle = corners.map(|corner| {
-            // Both zeros are one position.
-            let key = corner.map(|coordinate| (coordinate + 0.0).to_bits());
-            *self.vertices.entry(key).or_insert_with(|| {
-                self.mesh.positions.push(DVec3::from(corner.map(f64::from)));
-                self.mesh.positions.len() as u32 - 1
-            })
-        });
-        self.mesh.triangles.push(triangle);
-    }
 }
 
 #[cfg(test)]

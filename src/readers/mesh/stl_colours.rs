@@ -7,7 +7,7 @@
 //! Codes are sRGB. Other programs leave the bytes as they are, or number faces in them. So the bytes are colours
 //! without `COLOR=` only if each is 0 or has bit 15, and not all are 0x8000 or 0xFFFF.
 
-use super::stl::RECORD;
+use super::stl_soup::RECORD;
 use super::stl_statements::{COLOR, MATERIAL, note};
 use crate::decode::srgb_to_linear;
 use crate::error::{Location, Severity, Warning};

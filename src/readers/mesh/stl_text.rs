@@ -2,7 +2,7 @@
 //!
 //! A facet that cannot be read is left out with a warning.
 
-use super::stl::SoupBuilder;
+use super::stl_soup::SoupBuilder;
 use super::stl_statements::note;
 use super::wavefront::{lines, shown};
 use crate::error::{Location, Severity, Warning};
@@ -48,7 +48,7 @@ struct Facet {
     is_spoilt: bool,
 }
 
-/// What is not read of a text.
+/// Parts of a text that are not read.
 #[derive(Default)]
 struct Findings {
     /// Number of facets left out; line and reason of the first.
