@@ -149,7 +149,7 @@ pub fn file_kind(bytes: &[u8]) -> Option<FileKind> {
     let states_its_length = |at: usize| length(at).is_some_and(|length| length as usize == bytes.len());
     let head = &bytes[..bytes.len().min(HEAD)];
     match head {
-        [b'M', b'M', ..] if states_its_length(2) => Some(kind("a 3D Studio scene (.3ds)", FROM_BLENDER)),
+        [b'M', b'M', ..] if states_its_length(2) => Some(kind("a scene of 3D Studio", FROM_BLENDER)),
         [b'B', b'M', ..] if states_its_length(2) => Some(image("a BMP image")),
         _ if head.starts_with(b"RIFF") && head.get(8..12) == Some(b"WEBP") => Some(image("a WebP image")),
         _ if head.get(4..8) == Some(b"ftyp") => Some(kind("a HEIF, AVIF or video file", TO_PNG)),
@@ -202,7 +202,7 @@ mod tests {
             (b"\x1F\x8B\x08\0", "a file compressed with gzip"),
             (b"PK\x03\x04\x14", "a zip archive"),
             (b"<?xml version=\"1.0\"?><COLLADA>", "a COLLADA scene"),
-            (b"MM\x0A\0\0\0\0\0\0\0", "a 3D Studio scene (.3ds)"),
+            (b"MM\x0A\0\0\0\0\0\0\0", "a scene of 3D Studio"),
             (b"glTF\x02\0\0\0", "a binary glTF model"),
             (b"\x89PNG\r\n\x1A\n", "a PNG image"),
             (b"solid a\n", ""),
