@@ -6,7 +6,8 @@
 //! `solid`. Of a file of another length, all triangles that are there are read. Reason against `stl_io` 0.11: it takes
 //! such files, which common exporters write, for text or for broken.
 
-use super::stl_soup::{RECORD, SoupBuilder};
+use super::stl_colours::RECORD;
+use super::stl_soup::SoupBuilder;
 use super::{RawMesh, stl_colours, stl_text};
 use crate::attributes::{FACE_COLOUR, NamedAttribute};
 use crate::error::{Location, SceneError, Warning};
@@ -14,7 +15,7 @@ use scene::AttributeValues;
 use std::path::Path;
 
 /// Bytes before the number of triangles.
-pub(super) const HEADER: usize = 80;
+const HEADER: usize = 80;
 /// Bytes at the start that tell a text from a binary file.
 const HEAD: usize = 1024;
 /// Coordinates of a triangle that the header does not count: zero, or a magnitude in this range.

@@ -7,13 +7,14 @@
 //! Codes are sRGB. Other programs leave the bytes as they are, or number faces in them. So the bytes are colours
 //! without `COLOR=` only if each is 0 or has bit 15, and not all are 0x8000 or 0xFFFF.
 
-use super::stl_soup::RECORD;
 use super::stl_statements::{COLOR, MATERIAL, note};
 use crate::decode::srgb_to_linear;
 use crate::error::{Location, Severity, Warning};
 use base::math::Rgb;
 use std::path::Path;
 
+/// Bytes per triangle: normal, corners and two bytes of attributes.
+pub const RECORD: usize = 50;
 /// Bit that all writers know.
 const BIT: u16 = 0x8000;
 /// Linear colour of faces without one: that of meshes without a material.

@@ -1,11 +1,8 @@
-//! Triangles of STL files.
+//! Triangles without shared vertices, which become a mesh with shared ones.
 
 use super::RawMesh;
 use glam::DVec3;
 use std::collections::HashMap;
-
-/// Bytes per triangle of a binary file: normal, corners and two bytes of attributes.
-pub(super) const RECORD: usize = 50;
 
 /// Builder of a mesh of triangles, whose corners at the same position become one vertex.
 #[derive(Default)]

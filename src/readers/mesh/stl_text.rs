@@ -48,7 +48,7 @@ struct Facet {
     is_spoilt: bool,
 }
 
-/// Parts of a text that are not read.
+/// Findings about a text: parts that are not read.
 #[derive(Default)]
 struct Findings {
     /// Number of facets left out; line and reason of the first.

@@ -90,7 +90,7 @@ impl SceneBuilder<'_> {
             self.sources.push((file.to_owned(), fnv1a(&bytes)));
         }
         if let Some(line) = mtl::before_materials(&bytes) {
-            let what = "statements come before the first newmtl";
+            let what = "statements precede the first newmtl";
             self.log.warn(&Location::line(file, line), what, "they are left out")?;
         }
         mtl::read(&bytes, file)

@@ -24,7 +24,7 @@ const MAX_BYTES: usize = 1 << 30;
 /// Maximum time of a case in seconds, elapsed and of the processor.
 const MAX_SECONDS: f64 = 1.0;
 
-/// Result that a damaged file must have.
+/// Outcome that a damaged file must have.
 #[derive(Clone, Copy, PartialEq)]
 enum Rule {
     /// An equal scene, or anything that is told.
