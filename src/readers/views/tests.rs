@@ -121,7 +121,7 @@ fn wrong_lists_are_errors_with_the_file_the_entry_and_a_remedy() {
         (frames(angle, "\"file_path\": 3,"), "file_path is no text"),
         (placed("[[1, 0, 0, 0]]"), "frame 1 (\"r_0\"): there is no valid transform_matrix; write four rows"),
         (placed("[[1, 0, 0], [0, 1, 0], [0, 0, 1]]"), "no valid transform_matrix"),
-        (placed("[[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 1, 1]]"), "no valid transform_matrix"),
+        (placed("[[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 1, 1]]"), "translation in the last row"),
         (placed("[[0, 0, 0, 0], [0, 0, 0, 0], [0, 0, 0, 0], [0, 0, 0, 1]]"), "looks nowhere"),
         (placed("\"here\""), "no valid transform_matrix"),
     ] {
