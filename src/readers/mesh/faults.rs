@@ -17,7 +17,7 @@ pub(super) enum Fault {
     NoNormal,
     /// A corner whose texture coordinates are infinite or no numbers.
     NoUv,
-    /// A vertex whose colour is infinite or no number.
+    /// A vertex or face whose colour is infinite or no number.
     NoColour,
     /// A polygon that crosses itself and has too many corners to search for its inside.
     Crossing,
@@ -53,7 +53,7 @@ const MESSAGES: [(Fault, &str, &str); 8] = [
     ),
     (
         Fault::NoColour,
-        "vertices with a colour that is no finite number",
+        "vertices or faces with a colour that is no finite number",
         "white is used instead; repair or re-export the mesh",
     ),
     (
@@ -87,14 +87,17 @@ impl Faults {
 /// Greatest code of a colour in eight bits.
 pub(super) const MAX_CODE: f64 = 255.0;
 
+/// Greatest channel up to which whole numbers may be radiance.
+const MAX_RADIANCE: f64 = 16.0;
+
 /// True if colours whose greatest channel is `most` go up to 255, if all are whole numbers.
 pub(super) fn are_codes(most: f64, are_whole: bool) -> bool {
-    are_whole && most > 1.0 && most <= MAX_CODE
+    are_whole && most > MAX_RADIANCE && most <= MAX_CODE
 }
 
 /// Returns the note that colours of numbers that are not bytes go up to 255.
 pub(super) fn note_of_codes(place: Location) -> Warning {
-    let what = "the colours are whole numbers above 1";
+    let what = "the colours are whole numbers up to 255";
     let fallback = "they count as 0 to 255, coded in sRGB";
     Warning { severity: Severity::Note, ..Warning::new(place, what, fallback) }
 }

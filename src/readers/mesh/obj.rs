@@ -1,7 +1,7 @@
 //! Reader of Wavefront OBJ: positions, texture coordinates, normals, polygons and material groups of selected objects.
 //!
 //! Six numbers after `v` are a position and a colour, coded in sRGB as Blender and MeshLab write it. Colours of whole
-//! numbers above 1 go up to 255. A seventh number is an opacity, which is not read. A fourth alone is a weight.
+//! numbers above 16 go up to 255. A seventh number is an opacity, which is not read. A fourth alone is a weight.
 //!
 //! Faces that cannot be used are left out, and named once for each reason.
 //!
@@ -396,7 +396,7 @@ mod tests {
             assert_eq!(mesh.groups, [("dark oak # wood".to_owned(), 0)]);
             assert!(mesh.uvs[..3].iter().all(|uv| *uv == Vec2::ZERO) && mesh.uvs[3].is_nan());
         }
-        let message = read_text("v 0 0 \\\n 0\n\nf 1 \\\n 2 / # far\n").unwrap_err();
+        let message = read_text("v 0 0 \\\n 0\n\nf 1 \\\n / # far\n").unwrap_err();
         assert!(message.contains("t.obj:4:") && message.contains("face corner"), "{message}");
     }
 

@@ -111,7 +111,7 @@ impl Definitions {
                 self.whole.insert(text.to_owned(), known);
                 continue;
             }
-            for name in readings(text.as_bytes()).into_iter().skip(1) {
+            for name in readings(text.as_bytes()).into_iter().skip(1).filter(|name| !name.is_empty()) {
                 let of = self.short.entry(name).or_insert(Some(number));
                 *of = of.filter(|other| *other == number || known == Some(*other)).map(|_| number);
             }

@@ -6,7 +6,7 @@
 //!   `_2`, `_3` are the attribute of that name. So is one property that ends with the first of them.
 //!
 //! Integers are fractions of the maximum of their type, coded in sRGB but for `alpha`. Floating-point numbers are
-//! linear. Blender's importer has the same default. Colours of other types than bytes that are whole numbers above 1
+//! linear. Blender's importer has the same default. Colours of other types than bytes that are whole numbers above 16
 //! are bytes nonetheless.
 
 use super::faults::{MAX_CODE, are_codes};
@@ -103,15 +103,15 @@ impl CollectedAttributes {
         CollectedAttributes(attributes.into_iter().map(empty).collect())
     }
 
-    /// Adds, `count` times, the values of an element whose properties have the values `row`. Returns false if one is
-    /// not finite; it becomes white.
+    /// Adds, `count` times, the values of an element whose properties have the values `row`. Returns false if a
+    /// colour is not finite; it becomes white.
     pub fn push(&mut self, row: &[f64], count: usize) -> bool {
         let mut are_finite = true;
         for CollectedAttribute { of, values, most, are_whole } in &mut self.0 {
             let numbers = of.numbers(row);
             let mut value =
                 if of.may_be_codes() { Rgb::from(numbers.map(|n| n as f32)) } else { of.decoded(numbers) };
-            if !value.is_finite() {
+            if of.is_colour && !value.is_finite() {
                 (value, are_finite) = (Rgb::ONE, false);
             }
             *most = value.max_element().max(*most);

@@ -157,7 +157,10 @@ impl PlyContents<'_> {
                 property_values(property, values, |v| corners.push(index(v)))?;
                 self.face(&corners, vertex_count, values);
             }
-            attributes.push(&row, self.mesh.triangles.len() - before);
+            if !attributes.push(&row, self.mesh.triangles.len() - before) {
+                let place = self.place(values);
+                self.faults.add(Fault::NoColour, || place);
+            }
         }
         let (of_faces, has_codes) = attributes.finish(AttributeValues::Triangles);
         self.mesh.attributes.extend(of_faces);
