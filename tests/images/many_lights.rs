@@ -7,7 +7,7 @@ use glam::Vec3;
 use lightsplat::math::Rgb;
 use lightsplat::method::cache;
 use lightsplat::method::path::Settings;
-use lightsplat::scene::DeltaLight;
+use lightsplat::scene::{DeltaLight, Environment};
 
 /// Number of rooms along each side of the building.
 const ROOMS: usize = 3;
@@ -89,4 +89,29 @@ fn lamps_of_other_rooms_are_hardly_sampled_once_learned() {
     assert!((mean / expected - 1.0).abs() < 0.01, "{mean} {expected}");
     let [learned, plain] = [learned, plain].map(|image| mean_square(&image, &reference).sqrt());
     assert!(learned < 0.9 * plain, "{learned} {plain}");
+}
+
+#[test]
+fn a_weak_lamp_lights_a_closed_room_under_a_bright_sky() {
+    let room = |sky: f32| {
+        let mut scene = scene(camera(Vec3::new(0.5, 0.5, 0.95), Vec3::new(0.5, 0.4, 0.0), 1.0), [16, 16]);
+        let wall = add_material(&mut scene, diffuse(Rgb::splat(0.5)));
+        let sides =
+            [(Vec3::ZERO, Vec3::Z, Vec3::X), (Vec3::ZERO, Vec3::X, Vec3::Y), (Vec3::ZERO, Vec3::Y, Vec3::Z)];
+        for (corner, u, v) in sides {
+            scene.meshes.push(quad(corner, u, v, wall));
+            scene.meshes.push(quad(Vec3::ONE, -u, -v, wall));
+        }
+        let lamp = quad(Vec3::new(0.4, 0.99, 0.4), Vec3::X * 0.2, Vec3::Z * 0.2, wall);
+        scene.meshes.push(emitting(lamp, Rgb::splat(1e-4)));
+        if sky > 0.0 {
+            scene.environment = Some(Environment::Constant(Rgb::splat(sky)));
+        }
+        world(scene)
+    };
+    let [dark, bright] = [room(0.0), room(1.0)];
+    for (name, method) in small_methods() {
+        let [alone, beside] = [&dark, &bright].map(|world| mean_luminance(&image(world, &method)));
+        assert!((beside / alone - 1.0).abs() < 0.08, "{name}: {beside} beside a sky, {alone} without");
+    }
 }

@@ -5,6 +5,10 @@ use super::{EmissionNumbers, EmissionSample, PhotonEmitter};
 use base::sampling::Sampler;
 use world::light::DiscreteDistribution;
 
+/// Minimum share of the paths of emitters that are infinitely far, and of the other emitters. The brighter ones may light
+/// nothing that is seen, as the sky does around a closed room.
+const MIN_SHARE: f32 = 0.1;
+
 /// Plan for the photons of a scene. Flux is unbiased for any plan.
 pub(super) struct EmitterPlan<'w> {
     /// Emitters in proportion to their numbers of paths.
@@ -18,9 +22,9 @@ pub(super) struct EmitterPlan<'w> {
 }
 
 impl<'w> EmitterPlan<'w> {
-    /// Creates the plan without aims: paths in proportion to the flux of emitters.
+    /// Creates the plan without aims: paths in proportion to the flux of emitters, but for [`MIN_SHARE`].
     pub fn by_power(emitter: &PhotonEmitter, photons: usize) -> EmitterPlan<'w> {
-        let by_paths = emitter.by_power.clone();
+        let by_paths = with_shares(emitter, emitter.by_power.clone());
         EmitterPlan { far_share: far_share(emitter, &by_paths), by_paths, aims: None, photons }
     }
 
@@ -30,6 +34,7 @@ impl<'w> EmitterPlan<'w> {
             emitter.by_power.probability(index) / if emitter.is_far(index) { aims.gain } else { 1.0 }
         };
         let by_paths = DiscreteDistribution::new((0..emitter.by_power.len()).map(weight));
+        let by_paths = with_shares(emitter, by_paths);
         EmitterPlan { far_share: far_share(emitter, &by_paths), by_paths, aims: Some(aims), photons }
     }
 
@@ -45,6 +50,18 @@ impl<'w> EmitterPlan<'w> {
             None => emitter.begin(index, 1.0 / self.by_paths.probability(index), &numbers),
         }
     }
+}
+
+/// Returns the distribution with at least [`MIN_SHARE`] for each of both kinds of emitters, if there are both.
+fn with_shares(emitter: &PhotonEmitter, by_paths: DiscreteDistribution) -> DiscreteDistribution {
+    let far = far_share(emitter, &by_paths);
+    let wanted = far.clamp(MIN_SHARE, 1.0 - MIN_SHARE);
+    if wanted == far || far <= 0.0 || far >= 1.0 {
+        return by_paths;
+    }
+    let factor = |index| if emitter.is_far(index) { wanted / far } else { (1.0 - wanted) / (1.0 - far) };
+    let weight = |index| by_paths.probability(index) * factor(index);
+    DiscreteDistribution::new((0..by_paths.len()).map(weight))
 }
 
 /// Share of the paths that begin infinitely far.

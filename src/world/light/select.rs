@@ -22,6 +22,10 @@ const CUT: usize = 16;
 /// Maximum number of candidates whose weights are a small array.
 const FEW: usize = 8;
 
+/// Maximum weight of the environment relative to all other emitters at points which these light. The environment may
+/// be invisible from where it is much brighter than lamps, as it is in a closed room.
+const MAX_ENVIRONMENT: f32 = 31.0;
+
 /// Choice among the emitters of a scene.
 #[derive(Clone, Debug)]
 pub(super) struct EmitterChoice {
@@ -180,13 +184,18 @@ impl EmitterChoice {
                 }
             }
         }
-        if let Some(weight) = self.environment_weight {
-            weights[self.by_power.len() - 1] = [weight; LANES];
-        }
         let mut local_total = [0.0; LANES];
-        for w in weights.iter() {
+        for w in weights[..self.tree.len()].iter() {
             for i in 0..LANES {
                 local_total[i] += w[i];
+            }
+        }
+        if let Some(weight) = self.environment_weight {
+            let row = &mut weights[self.by_power.len() - 1];
+            for i in 0..LANES {
+                let most = if local_total[i] > 0.0 { MAX_ENVIRONMENT * local_total[i] } else { weight };
+                row[i] = if weight < most { weight } else { most };
+                local_total[i] += row[i];
             }
         }
         let mut scale = [0.0; LANES];
