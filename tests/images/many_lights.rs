@@ -111,7 +111,7 @@ fn a_weak_lamp_lights_a_closed_room_under_a_bright_sky() {
     };
     let [dark, bright] = [room(0.0), room(1.0)];
     for (name, method) in small_methods() {
-        let [alone, beside] = [&dark, &bright].map(|world| mean_luminance(&image(world, &method)));
+        let [alone, beside] = [&dark, &bright].map(|world| mean_luminance(&image(world, method.renderer())));
         assert!((beside / alone - 1.0).abs() < 0.08, "{name}: {beside} beside a sky, {alone} without");
     }
 }

@@ -5,8 +5,8 @@ use super::{EmissionNumbers, EmissionSample, PhotonEmitter};
 use base::sampling::Sampler;
 use world::light::DiscreteDistribution;
 
-/// Minimum share of the paths of emitters that are infinitely far, and of the other emitters. The brighter ones may light
-/// nothing that is seen, as the sky does around a closed room.
+/// Minimum share of the paths of emitters that are infinitely far, and of the other emitters. The brighter ones may
+/// light nothing that is seen, as the sky does around a closed room.
 const MIN_SHARE: f32 = 0.1;
 
 /// Plan for the photons of a scene. Flux is unbiased for any plan.
