@@ -94,26 +94,25 @@ fn split_files(
 #[derive(Debug, Default)]
 pub(crate) struct Definitions {
     whole: BTreeMap<String, usize>,
-    /// Names before a comment; `None` if several definitions may have the name.
+    /// Names before a `#` that nothing tells to be a comment; `None` if several definitions may have the name.
     short: BTreeMap<String, Option<usize>>,
     count: usize,
 }
 
 impl Definitions {
-    /// Adds a library with the texts of its definitions. Texts that an earlier library defines do not count.
+    /// Adds a library with the texts of its definitions. Names that an earlier library defines do not count.
     pub fn add<'a>(&mut self, library: impl Iterator<Item = &'a str>) {
         let first = self.count;
         for text in library {
             let number = self.count;
             self.count += 1;
-            let known = self.whole.insert(text.to_owned(), number);
-            if let Some(known) = known.filter(|known| *known < first) {
-                self.whole.insert(text.to_owned(), known);
-                continue;
+            for name in [text.to_owned(), name(text.as_bytes())] {
+                let known = self.whole.entry(name).or_insert(number);
+                *known = if *known < first { *known } else { number };
             }
             for name in readings(text.as_bytes()).into_iter().skip(1).filter(|name| !name.is_empty()) {
                 let of = self.short.entry(name).or_insert(Some(number));
-                *of = of.filter(|other| *other == number || known == Some(*other)).map(|_| number);
+                *of = of.filter(|other| *other == number);
             }
         }
     }
@@ -178,7 +177,7 @@ mod tests {
             ("brick #red", Some(3)),
             ("Paint\t#1", Some(4)),
             ("a # 2", Some(6)),
-            ("a", None),
+            ("a", Some(6)),
             ("#ff0000", Some(7)),
             ("stone", Some(9)),
             ("", None),
