@@ -238,7 +238,13 @@ fn values_that_are_no_colours_are_repaired() {
     let message = of_file("material = \"m\"", ("a.ply", &file)).unwrap_err();
     assert!(message.contains("a colour that is no finite number: 2, "), "{message}");
     let file = ply(&floats, "comment", ["0 0 0", "-1 0.5 0", "3 0 0.5", "1 1 1"], [""; 2]);
-    let loaded = of_file("material = \"m\"", ("a.ply", &file)).unwrap();
+    let strict = of_file("material = \"m\"", ("a.ply", &file)).unwrap_err();
+    assert!(strict.contains("1 values of the attribute \"color\""), "{strict}");
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("a.ply"), &file).unwrap();
+    let text = format!("{HEAD}mesh = [{{ file = \"a.ply\", material = \"m\" }}]\n");
+    fs::write(folder.path().join("s.toml"), text).unwrap();
+    let loaded = load(&folder.path().join("s.toml"), &LoadOptions::default()).unwrap();
     let expected = [[0.0; 3], [0.0, 0.5, 0.0], [1.0, 0.0, 0.5], [1.0; 3]];
     assert_near(vertices(&loaded.scene.meshes[0]), &expected);
     assert_eq!((loaded.repairs.bad_texels, loaded.repairs.clamped), (1, 1));

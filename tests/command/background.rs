@@ -105,12 +105,8 @@ fn a_hidden_background_is_transparent_by_every_method() {
         }
     }
     // A grey card in a grey sky has radiance .5, also where only a quarter of it is there.
-    render(
-        &sandbox,
-        "b.png",
-        &["--background", "none", "--method", "path", "--spp", "256", "--view", "standard"],
-    )
-    .expect(0);
+    let many = ["--background", "none", "--method", "path", "--spp", "256", "--view", "standard"];
+    sandbox.run(&[&["render", "s.toml", "-o", "b.png", "--exposure", "0"], &many[..]].concat()).expect(0);
     let card = image::open(sandbox.path("b.png")).unwrap().into_rgba8().get_pixel(18, 37).0;
     assert!(card[1].abs_diff(188) < 12 && card[3].abs_diff(64) < 3, "{card:?}");
 }

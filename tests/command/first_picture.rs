@@ -192,9 +192,9 @@ fn built_in_scenes_render_by_name_and_files_come_first() {
     assert!(bytes("cornell.exr") == bytes("file.exr") && bytes("cornell.png") == bytes("file.png"));
     assert!(sandbox.run(&["info", "kitchen"]).expect(0).stdout.contains("triangles"));
     fs::write(sandbox.path("knot"), "").unwrap();
-    for name in ["knot", "no-such-scene"] {
+    for (name, said) in [("knot", "an empty file"), ("no-such-scene", "or one of apartment, cornell")] {
         let stderr = sandbox.run(&["info", name]).expect(3).stderr;
-        assert!(stderr.contains("or one of apartment, cornell"), "{stderr}");
+        assert!(stderr.contains(said), "{stderr}");
     }
     fs::write(sandbox.path("jobs.toml"), "[[picture]]\nscene = 'cornell'\noutput = 'b.exr'\n").unwrap();
     assert!(sandbox.run(&["batch", "jobs.toml", "--list"]).expect(0).stdout.contains("cornell"));

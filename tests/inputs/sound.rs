@@ -28,9 +28,8 @@ pub fn assert_sound(Loaded { scene, cameras, .. }: &Loaded) {
     assert_eq!(stored, scene.meshes.len());
     for texture in &scene.textures {
         assert_eq!(texture.texels.len(), texture.width * texture.height);
-        assert!(
-            texture.texels.iter().all(|t| t.is_finite() && t.min_element() >= 0.0 && t.max_element() <= 1.0)
-        );
+        // Texels are limited after their factor, so they may exceed 1.
+        assert!(texture.texels.iter().all(|t| t.is_finite() && t.min_element() >= 0.0));
     }
     assert!(scene.centre.is_finite());
     for camera in cameras.path.iter().chain([&cameras.still]) {

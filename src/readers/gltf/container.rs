@@ -21,19 +21,10 @@ pub(super) struct Container<'a> {
 impl<'a> Container<'a> {
     /// Divides a file into its parts.
     pub fn of(bytes: &'a [u8], place: &Location) -> Result<Container<'a>, SceneError> {
-        let container = match bytes.starts_with(b"glTF") {
-            true => chunks(bytes, place)?,
-            false => Container { json: bytes, binary: None, is_text: true },
-        };
-        for (mark, encoding) in
-            [(&b"\xEF\xBB\xBF"[..], "UTF-8"), (b"\xFE\xFF", "UTF-16"), (b"\xFF\xFE", "UTF-16")]
-        {
-            if container.json.starts_with(mark) {
-                let what = format!("the JSON begins with a byte order mark of {encoding}");
-                return Err(place.wrong(what, "save it as UTF-8 without a byte order mark"));
-            }
+        match bytes.starts_with(b"glTF") {
+            true => chunks(bytes, place),
+            false => Ok(Container { json: bytes, binary: None, is_text: true }),
         }
-        Ok(container)
     }
 
     /// Parses the JSON of glTF 2.0.

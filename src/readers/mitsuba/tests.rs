@@ -352,5 +352,5 @@ fn checkerboards_of_numbers_have_their_squares_exchanged_in_version_3() {
     let material = scene.materials.iter().find(|material| material.opacity.is_some()).unwrap();
     let at_origin = |id: TextureId| scene.textures.by_id(id).unwrap().lookup(glam::Vec2::new(0.2, 0.8)).x;
     let found = [material.opacity.unwrap().texture(), material.diffuse.texture()];
-    assert_eq!(found.map(|id| at_origin(id.unwrap())), [0.7, 0.1]);
+    assert_eq!(found.map(|id| at_origin(id.unwrap())), [0.1, 0.7]);
 }

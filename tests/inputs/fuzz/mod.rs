@@ -191,7 +191,8 @@ fn fuzz(target: &str, count: u64) {
     }
     let _ = fs::remove_dir_all(workplace.case("").parent().unwrap());
     assert!(failed.is_empty(), "{failed:#?}");
-    let is_scene = !matches!(target, "records" | "job" | "views");
+    // Of an STL file, all triangles that are there are read.
+    let is_scene = !matches!(target, "records" | "job" | "views" | "stl");
     assert!(!is_scene || (loaded > 0 && loaded < case - first), "{loaded} load: the damage is one-sided");
 }
 
