@@ -110,9 +110,9 @@ const ALL_OF_OBJ: &str = "mtllib no.mtl roof.mtl my roof.mtl # both\nv 0 0 0 # a
 const ALL_OF_MTL: &str = "newmtl slab\nKd 0.6 0.6 0.5\nKe 1 2 3\nmap_Ke tile.png\nd 0.5\nmap_d tile.png\nillum 1\n\
     newmtl tiles\nKd 0\nKs 0.9 0.7 0.4\nNs 98\nNi 1.4\nTr 0.25\nillum 2\nmap_Kd -s 2 2 1 tile.png\nmap_bump x.png\n\
     newmtl mirror\nKs 1 1 1\nillum 3\nnewmtl glass\nNi 1.5\nTf 0.5 0.6 \\\n 0.7\nillum 7\n\
-    newmtl slab # more\nKa 1 1 1\nKd 0.9 0.6 0.2\nKs 0.5\nPr 0.25\nPm 1\nPs 0.1\nPc 0.8\nPcr 0.03\naniso 0.5\n\
+    newmtl brick # more\nKa 1 1 1\nKd 0.9 0.6 0.2\nKs 0.5\nPr 0.25\nPm 1\nPs 0.1\nPc 0.8\nPcr 0.03\naniso 0.5\n\
     anisor 0.2\nmap_Pr -imfchan g tile.png\nmap_Pm -mm 0.1 0.8 tile.png\nnorm -bm 0.5 tile.png\nillum 3\n\
-    newmtl tiles\nKa 0.5 0.5 0.5\nKd 0.9 0.6 0.2\nKs 0.5\nNs 90\nillum 6\nd 0.5\nbump tile.png -s 2 -o 0.1 0.2\n\
+    newmtl plaster\nKa 0.5 0.5 0.5\nKd 0.9 0.6 0.2\nKs 0.5\nNs 90\nillum 6\nd 0.5\nbump tile.png -s 2 -o 0.1 0.2\n\
     map_Ks -clamp on -t 1 1 1 tile.png\nmap_d -blendu off -blendv off tile.png\ndisp no.png\nKm 1\nKd xyz 1 1 1\n";
 
 const STL: &str = "solid roof # of a house\n# two slopes\n facet normal 0 0 1\n  outer loop\n   vertex 0 0 0\n   \

@@ -29,8 +29,8 @@ fn scenes() -> Vec<(String, String)> {
         scenes.push((format!("of-{mesh}.toml"), text));
     }
     scenes.push(("of-mtl.toml".to_owned(), format!("{head}mesh = [{{ file = \"of-mtl.obj\" }}]\n")));
-    let materials =
-        ["slab", "tiles", "mirror", "glass"].map(|name| format!("usemtl {name}\nf 1/1 2/2 3/3\n"));
+    let materials = ["slab", "tiles", "mirror", "glass", "brick", "plaster"]
+        .map(|name| format!("usemtl {name}\nf 1/1 2/2 3/3\n"));
     let library =
         format!("mtllib case.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\n{}", materials.concat());
     scenes.push(("of-mtl.obj".to_owned(), library));
