@@ -241,7 +241,7 @@ fn the_sun_comes_through_a_thin_pane_by_its_transmittance() {
     });
     let settings = path::Settings { spp: 1024, max_depth: Some(2), ..Default::default() };
     // The light has an edge more through the pane.
-    let behind = path::Settings { max_depth: Some(3), ..settings.clone() };
+    let behind = path::Settings { max_depth: Some(3), ..settings };
     let share = mean_by(&hung, &behind) / mean_by(&open, &settings);
     // Fresnel's reflectance at the sun's 22.4 degrees, by both sides of the sheet.
     let cos: f64 = 1.0 / (1.0f64 + 0.16 + 0.01).sqrt();
@@ -251,7 +251,7 @@ fn the_sun_comes_through_a_thin_pane_by_its_transmittance() {
     let expected = DVec3::new(0.9, 0.6, 0.3) * (1.0 - 2.0 * one / (1.0 + one));
     assert_means_within(1e-3, share, expected, "paths");
     let by_cache = cache::Settings { spp: 256, max_depth: Some(2), ..Default::default() };
-    let behind = cache::Settings { max_depth: Some(3), ..by_cache.clone() };
+    let behind = cache::Settings { max_depth: Some(3), ..by_cache };
     let share = mean_by(&hung, &behind) / mean_by(&open, &by_cache);
     assert_means_within(1e-3, share, expected, "cache");
 }

@@ -37,7 +37,7 @@ const TO_E_GAMUT: Mat3 = Mat3::from_cols(
 /// E-Gamut to Rec. 2020.
 const TO_REC_2020: Mat3 = Mat3::from_cols(
     Vec3::new(1.137_588_9, -0.019_087_16, -0.097_325_63),
-    Vec3::new(0.008_350_5, 1.215_316_1, -0.100_888_24),
+    Vec3::new(0.008_350_5, 1.215_316, -0.100_888_24),
     Vec3::new(-0.145_932_25, -0.196_244_66, 1.198_362_6),
 );
 /// Rec. 2020 to primaries inset and turned.

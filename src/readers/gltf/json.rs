@@ -51,7 +51,8 @@ const MAX_EXACT: f64 = 9_007_199_254_740_992.0;
 pub(super) fn repair(root: &mut Value) -> bool {
     match root {
         Value::Object(members) => repair_object(members, false),
-        Value::Array(list) => list.iter_mut().fold(false, |changed, value| repair(value) || changed),
+        // Every element is repaired, so nothing may end the search early.
+        Value::Array(list) => list.iter_mut().filter_map(|value| repair(value).then_some(())).count() > 0,
         _ => false,
     }
 }
@@ -74,7 +75,7 @@ fn repair_object(members: &mut Map<String, Value>, is_map: bool) -> bool {
             // Each morph target is a map of attributes.
             Value::Array(list) if key == "targets" => {
                 let maps = list.iter_mut().filter_map(Value::as_object_mut);
-                maps.fold(false, |changed, map| repair_object(map, true) || changed)
+                maps.filter_map(|map| repair_object(map, true).then_some(())).count() > 0
             }
             value => repair(value),
         };
