@@ -19,7 +19,7 @@ pub(super) enum Fault {
     NoUv,
     /// A vertex or face whose colour is infinite or no number.
     NoColour,
-    /// A polygon that crosses itself and has too many corners to search for its inside.
+    /// A polygon of many corners that crosses itself, so that its surface is approximate.
     Crossing,
 }
 

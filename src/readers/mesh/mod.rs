@@ -8,6 +8,8 @@
 //! outside stays outside, with or without normals. This is the rule of glTF 2.0 and of Mitsuba 3 later than 3.9.1.
 //! Mitsuba up to 3.9.1 turns mirrored meshes without normals inside out.
 
+mod chains;
+mod edge_order;
 pub(crate) mod encodings;
 mod faults;
 mod large_polygon;

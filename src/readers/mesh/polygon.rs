@@ -9,37 +9,32 @@ use glam::{DMat3, DVec2, DVec3};
 /// Number of corners up to which ears are clipped.
 const MAX_CLIPPED: usize = 2_000;
 
-/// Number of corners up to which ears of a polygon that crosses itself are clipped.
-const MAX_CROSSING: usize = 10_000;
-
 /// Adds the triangles of a polygon of at least three corners; `position` returns the position of a corner. Returns
-/// false if the inside is not searched for, because the polygon crosses itself and has too many corners.
+/// false if the polygon has many corners and crosses itself, so that its surface is approximate.
 pub(super) fn cut(corners: &[u32], position: impl Fn(&u32) -> DVec3, triangles: &mut Vec<[u32; 3]>) -> bool {
-    let mut is_found = true;
+    let mut is_exact = true;
     if corners.len() > 3 {
         let points: Vec<DVec3> = corners.iter().map(position).collect();
         if let Some(flat) = flattened(&points).filter(|flat| !is_convex(flat)) {
-            let found = inside(&flat);
-            is_found = found.is_some();
-            let found = found.unwrap_or_default();
+            let found;
+            (found, is_exact) = if flat.len() > MAX_CLIPPED {
+                let cut = large_polygon::triangles(&flat);
+                (cut.triangles, !cut.crosses_itself)
+            } else {
+                (ears(&flat), true)
+            };
             if !found.is_empty() {
                 triangles.extend(found.into_iter().map(|t| t.map(|corner| corners[corner as usize])));
-                return true;
+                return is_exact;
             }
         }
     }
     triangles.extend(corners[1..].windows(2).map(|w| [corners[0], w[0], w[1]]));
-    is_found
+    is_exact
 }
 
-/// Returns the triangles of a polygon that is not convex; `None` if it crosses itself and has too many corners.
-fn inside(flat: &[DVec2]) -> Option<Vec<[u32; 3]>> {
-    if flat.len() > MAX_CLIPPED {
-        let triangles = large_polygon::triangles(flat);
-        if triangles.is_some() || flat.len() > MAX_CROSSING {
-            return triangles;
-        }
-    }
+/// Returns the triangles of a polygon of few corners that is not convex.
+fn ears(flat: &[DVec2]) -> Vec<[u32; 3]> {
     let mut ears: Vec<u32> = Vec::new();
     Earcut::new().earcut(flat.iter().map(|p| p.to_array()), &[], &mut ears);
     // The clipper may reverse triangles.
@@ -47,7 +42,7 @@ fn inside(flat: &[DVec2]) -> Option<Vec<[u32; 3]>> {
         turn if turn < 0.0 => [e[0], e[2], e[1]],
         _ => [e[0], e[1], e[2]],
     };
-    Some(ears.chunks_exact(3).map(oriented).collect())
+    ears.chunks_exact(3).map(oriented).collect()
 }
 
 /// Returns the polygon in the plane across its mean normal, counter-clockwise; `None` without area.
@@ -63,7 +58,29 @@ fn flattened(points: &[DVec3]) -> Option<Vec<DVec2>> {
 
 fn is_convex(flat: &[DVec2]) -> bool {
     let n = flat.len();
-    (0..n).all(|i| turn([flat[i], flat[(i + 1) % n], flat[(i + 2) % n]]) >= 0.0)
+    let turns_left = |ring: &[DVec2]| {
+        let n = ring.len();
+        (0..n).all(|i| turn([ring[i], ring[(i + 1) % n], ring[(i + 2) % n]]) >= 0.0)
+    };
+    if !turns_left(flat) {
+        return false;
+    }
+    // Repeated corners hide turns.
+    if (0..n).any(|i| flat[i] == flat[(i + 1) % n]) {
+        let distinct = |&i: &usize| flat[i] != flat[(i + 1) % n];
+        let ring: Vec<DVec2> = (0..n).filter(distinct).map(|i| flat[i]).collect();
+        if !turns_left(&ring) {
+            return false;
+        }
+    }
+    n <= MAX_CLIPPED || is_one_round(flat)
+}
+
+/// True if a polygon that only turns left does not go round more than once.
+fn is_one_round(flat: &[DVec2]) -> bool {
+    let edges = flat.iter().zip(flat.iter().cycle().skip(1)).filter(|(a, b)| a != b);
+    let rises: Vec<bool> = edges.map(|(a, b)| a.to_array() < b.to_array()).collect();
+    rises.iter().zip(rises.iter().cycle().skip(1)).filter(|(a, b)| a != b).count() <= 2
 }
 
 /// Returns twice the area of a triangle, positive if counter-clockwise.
@@ -74,6 +91,7 @@ fn turn([a, b, c]: [DVec2; 3]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use glam::DQuat;
 
     fn cut_all(points: &[DVec3]) -> (Vec<[u32; 3]>, f64) {
         let corners: Vec<u32> = (0..points.len() as u32).collect();
@@ -84,7 +102,8 @@ mod tests {
             0.5 * (b - a).cross(c - a).z
         };
         let areas: Vec<f64> = triangles.iter().map(area).collect();
-        assert!(areas.iter().all(|area| *area >= 0.0) || areas.iter().all(|area| *area <= 0.0), "{areas:?}");
+        let [least, most] = [f64::min, f64::max].map(|pick| areas.iter().copied().fold(0.0, pick));
+        assert!(least > -1e-14 || most < 1e-14, "{least} to {most}");
         (triangles, areas.iter().sum())
     }
 
@@ -116,54 +135,116 @@ mod tests {
     }
 
     /// Returns a comb of `teeth` teeth, 1 long, on a back of 2 x 1.
-    fn comb(teeth: usize) -> Vec<DVec3> {
+    fn comb(teeth: usize) -> Vec<[f64; 2]> {
+        let mut flat = vec![[-1.0, -1.0], [1.0, -1.0]];
+        flat.extend(teeth_upwards(teeth));
+        flat
+    }
+
+    /// Returns the outline of teeth from the right to the left, from y = 0 to 1.
+    fn teeth_upwards(teeth: usize) -> impl Iterator<Item = [f64; 2]> {
         let width = 2.0 / (2 * teeth - 1) as f64;
-        let mut flat = vec![[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0]];
-        for gap in 0..teeth - 1 {
-            let [right, left] = [1, 2].map(|k| 1.0 - width * (2 * gap + k) as f64);
-            flat.extend([[right, 1.0], [right, 0.0], [left, 0.0], [left, 1.0]]);
+        (0..teeth).flat_map(move |tooth| {
+            let [right, left] = [0, 1].map(|k| 1.0 - width * (2 * tooth + k) as f64);
+            [[right, 0.0], [right, 1.0], [left, 1.0], [left, 0.0]]
+        })
+    }
+
+    /// Cuts a polygon at several angles, and checks the area.
+    fn check(name: &str, flat: &[[f64; 2]], expected: f64) {
+        for angle in [0.0, 0.3, 0.25 * std::f64::consts::PI] {
+            let turned: Vec<DVec3> =
+                points(flat).iter().map(|p| DQuat::from_rotation_z(angle) * *p).collect();
+            let corners: Vec<u32> = (0..turned.len() as u32).collect();
+            assert!(
+                cut(&corners, |&corner| turned[corner as usize], &mut Vec::new()),
+                "{name}: crosses itself"
+            );
+            let (triangles, area) = cut_all(&turned);
+            assert!((area - expected).abs() < 1e-9 * expected, "{name}: {area}, not {expected}");
+            assert!(triangles.len() < flat.len(), "{name}");
         }
-        flat.push([-1.0, 1.0]);
-        points(&flat)
     }
 
     #[test]
     fn combs_of_any_size_keep_their_gaps() {
-        for teeth in [10, 400, 2_521, 10_000] {
-            let start = std::time::Instant::now();
-            let (triangles, area) = cut_all(&comb(teeth));
-            let expected = 2.0 + 2.0 * teeth as f64 / (2 * teeth - 1) as f64;
-            assert!((area - expected).abs() < 1e-9, "{teeth}: {area}, not {expected}");
-            assert_eq!(triangles.len(), 4 * teeth - 2);
-            assert!(start.elapsed().as_secs_f64() < 10.0, "{teeth}");
+        for teeth in [10, 400, 3_000] {
+            let area = 2.0 * teeth as f64 / (2 * teeth - 1) as f64;
+            check("one side", &comb(teeth), 2.0 + area);
+            let mut both: Vec<[f64; 2]> = teeth_upwards(teeth).collect();
+            both.extend(teeth_upwards(teeth).map(|[x, y]| [-x, -1.0 - y]));
+            check("both sides", &both, 2.0 + 2.0 * area);
         }
+    }
+
+    /// Returns the area of a ring of 3,000 corners.
+    fn ring_area(radius: f64) -> f64 {
+        1_500.0 * radius * radius * (std::f64::consts::TAU / 3_000.0).sin()
+    }
+
+    fn ring(radius: f64, sign: f64) -> impl Iterator<Item = [f64; 2]> {
+        (0..3_000).map(move |i| {
+            let (sin, cos) = (sign * f64::from(i) / 3_000.0 * std::f64::consts::TAU).sin_cos();
+            [radius * cos, radius * sin]
+        })
     }
 
     #[test]
     fn holes_and_spikes_of_large_polygons_are_kept() {
-        let ring = |radius: f64, sign: f64| {
-            (0..3_000).map(move |i| {
-                let (sin, cos) = (sign * f64::from(i) / 3_000.0 * std::f64::consts::TAU).sin_cos();
-                [radius * cos, radius * sin]
-            })
-        };
         // A bridge leads from the outer ring to the hole and back, and a spike out and back.
         let mut flat: Vec<[f64; 2]> = ring(2.0, 1.0).chain([[2.0, 0.0]]).collect();
         flat.extend(ring(1.0, -1.0).chain([[1.0, 0.0], [2.0, 0.0], [3.0, 0.0]]));
-        let area = |radius: f64| 1_500.0 * radius * radius * (std::f64::consts::TAU / 3_000.0).sin();
-        let expected = area(2.0) - area(1.0);
-        let found = cut_all(&points(&flat)).1;
-        assert!((found - expected).abs() < 1e-9, "{found}, not {expected}");
+        check("keyhole", &flat, ring_area(2.0) - ring_area(1.0));
+        // The way back has one more corner, and each corner comes twice.
+        flat.insert(flat.len() - 2, [1.5, 0.0]);
+        let twice: Vec<[f64; 2]> = flat.iter().flat_map(|p| [*p, *p]).collect();
+        let area = cut_all(&points(&twice)).1;
+        assert!((area - ring_area(2.0) + ring_area(1.0)).abs() < 1e-9, "{area}");
     }
 
     #[test]
-    fn large_polygons_that_cross_themselves_are_told() {
-        for (teeth, expected) in [(20, true), (600, true), (2_600, false)] {
-            let mut points = comb(teeth);
-            points.swap(4, 5);
+    fn runs_of_corners_on_a_line_and_spirals_are_kept() {
+        let l = [[0.0, 0.0], [3.0, 0.0], [3.0, 1.0], [1.0, 1.0], [1.0, 3.0], [0.0, 3.0]].map(DVec2::from);
+        let side =
+            |k: usize| (0..1_000).map(move |i| l[k].lerp(l[(k + 1) % 6], f64::from(i) / 1_000.0).to_array());
+        check("runs", &(0..6).flat_map(side).collect::<Vec<_>>(), 5.0);
+        let at = |i: u32, more: f64| {
+            (DVec2::from_angle(f64::from(i) * 0.05) * (f64::from(i) * 0.05 + more)).to_array()
+        };
+        let spiral: Vec<[f64; 2]> =
+            (0..3_000).map(|i| at(i, 3.0)).chain((0..3_000).rev().map(|i| at(i, 0.0))).collect();
+        let next = spiral.iter().cycle().skip(1);
+        let double_area: f64 = spiral.iter().zip(next).map(|(a, b)| a[0] * b[1] - a[1] * b[0]).sum();
+        check("spiral", &spiral, 0.5 * double_area);
+    }
+
+    #[test]
+    fn large_polygons_that_cross_themselves_are_filled_and_told() {
+        for (teeth, expected) in [(20, true), (600, false), (2_600, false)] {
+            let mut points = points(&comb(teeth));
+            points.swap(3, 4);
             let corners: Vec<u32> = (0..points.len() as u32).collect();
-            let is_found = cut(&corners, |&corner| points[corner as usize], &mut Vec::new());
-            assert_eq!(is_found, expected, "{teeth}");
+            let is_exact = cut(&corners, |&corner| points[corner as usize], &mut Vec::new());
+            assert_eq!(is_exact, expected, "{teeth}");
+            if !expected {
+                let area = 2.0 + 2.0 * teeth as f64 / (2 * teeth - 1) as f64;
+                assert!((cut_all(&points).1 - area).abs() < 2.0 / teeth as f64, "{teeth}");
+            }
         }
+        // A star: each edge crosses two others, and all turns are left.
+        let at = |i: u32| DVec2::from_angle(f64::from(2 * i) * std::f64::consts::TAU / 2_501.0).to_array();
+        let star = points(&(0..2_501).map(at).collect::<Vec<_>>());
+        let corners: Vec<u32> = (0..star.len() as u32).collect();
+        let mut triangles = Vec::new();
+        assert!(!cut(&corners, |&corner| star[corner as usize], &mut triangles));
+        assert!((cut_all(&star).1 - std::f64::consts::PI).abs() < 0.01);
+        // A tangle: each edge crosses most others.
+        let tangle: Vec<[f64; 2]> =
+            (1..6_000).map(|i| [0.618, 0.755].map(|step| (f64::from(i) * step).fract())).collect();
+        let corners: Vec<u32> = (0..tangle.len() as u32).collect();
+        let tangle = points(&tangle);
+        let mut triangles = Vec::new();
+        assert!(!cut(&corners, |&corner| tangle[corner as usize], &mut triangles));
+        assert!(!triangles.is_empty());
     }
 }
