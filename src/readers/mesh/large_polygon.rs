@@ -15,7 +15,7 @@ const GRID: f64 = (1_u64 << 50) as f64;
 /// Number of edges that may change places at crossings, per corner. A worse tangle becomes its hull.
 const MAX_CHANGES: usize = 4;
 
-/// Share of the area that bridges and spikes may add or lack if they cross an edge that they only touch.
+/// Part of the area and of the size by which bridges and spikes may cross an edge that they only touch.
 const ROUNDING: f64 = 1e-9;
 
 /// Edge of a polygon, from its left end; `step` is the change of the winding number across it upwards.
@@ -54,7 +54,7 @@ pub(super) fn triangles(polygon: &[DVec2]) -> Cut {
     let double_area: i128 = grid.iter().zip(next).map(|(a, b)| turn([grid[0], *a, *b])).sum();
     let excess = (area - double_area) as f64;
     let triangles = found.into_iter().map(|t| t.map(|rank| corners[rank as usize])).collect();
-    Cut { triangles, crosses_itself: excess.abs() > ROUNDING * area as f64 }
+    Cut { triangles, crosses_itself: sweep.crosses || excess.abs() > ROUNDING * area as f64 }
 }
 
 fn on_grid(polygon: &[DVec2]) -> Vec<[i64; 2]> {
@@ -106,13 +106,15 @@ struct Sweep {
     order: EdgeOrder,
     /// Number of edges that changed places at crossings.
     changes: usize,
+    /// True if edges cross by more than rounding.
+    crosses: bool,
 }
 
 impl Sweep {
     fn new(points: Vec<[i64; 2]>, edges: Vec<Edge>) -> Self {
         let regions = vec![OUTSIDE; edges.len()];
         let order = EdgeOrder::new(edges.len());
-        Self { chains: Chains::new(points), edges, regions, order, changes: 0 }
+        Self { chains: Chains::new(points), edges, regions, order, changes: 0, crosses: false }
     }
 
     /// Passes all points from the left; false if too many edges cross.
@@ -252,6 +254,7 @@ impl Sweep {
             at = self.order.after(at);
         }
         self.changes += spanned.len();
+        self.crosses |= spanned.iter().any(|&edge| self.distance(point, edge) > ROUNDING * GRID);
         let mut under = self.order.before(first);
         let mut winding = under.map_or(0, |edge| self.regions[edge as usize].winding);
         let regions: Vec<Region> = spanned.iter().map(|&edge| self.regions[edge as usize]).collect();
@@ -280,6 +283,14 @@ impl Sweep {
             self.order.insert(under, edge);
             under = Some(edge);
         }
+    }
+
+    /// Returns the distance of a point from the line of an edge.
+    fn distance(&self, point: u32, edge: u32) -> f64 {
+        let Edge { from, to, .. } = self.edges[edge as usize];
+        let [from, to] =
+            [from, to].map(|end| DVec2::from(self.chains.points[end as usize].map(|x| x as f64)));
+        self.height(point, edge).abs() as f64 / from.distance(to)
     }
 
     /// Returns a number of the sign of the height of a point above an edge.
