@@ -28,8 +28,8 @@ pub fn assert_sound(Loaded { scene, cameras, .. }: &Loaded) {
     assert_eq!(stored, scene.meshes.len());
     for texture in &scene.textures {
         assert_eq!(texture.texels.len(), texture.width * texture.height);
-        // Texels are limited after their factor, so they may exceed 1.
-        assert!(texture.texels.iter().all(|t| t.is_finite() && t.min_element() >= 0.0));
+        // Uses as a colour or a share have limited copies. Heights and normals may be negative or exceed 1.
+        assert!(texture.texels.iter().all(|t| t.is_finite()));
     }
     assert!(scene.centre.is_finite());
     for camera in cameras.path.iter().chain([&cameras.still]) {
