@@ -2,25 +2,27 @@
 //! quadrature, and lanes of numbers.
 
 mod cone;
-mod exp;
 mod frame;
+mod lane;
 mod lanes;
 mod placement;
 mod quadrature;
 mod real;
 mod unit;
+mod vector;
 
 pub use cone::Cone;
-pub use exp::lane_exp;
 pub use frame::Frame;
+pub use lane::{Lane, Mask, Mask16, f32x16};
 pub use lanes::{
     F32x16, LANES, U32x16, Vec2x16, Vec3x16, bits_of, blend, blend_u32, first_lanes, lanes_in, lanes_with,
     mask_of, select,
 };
 pub use placement::Placement;
 pub use quadrature::gauss_legendre;
-pub use real::{F32x8, Real, WIDTH};
+pub use real::{Real, WIDTH, f32x8};
 pub use unit::{right_of, unit};
+pub use vector::V3;
 
 /// Linear colour with Rec. 709 primaries: radiance, irradiance, flux or reflectance, as the variable's name says.
 pub type Rgb = glam::Vec3;

@@ -3,6 +3,8 @@
 
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub};
 
+pub use wide::f32x8;
+
 /// A number, or several lanes of numbers.
 pub trait Real:
     Copy
@@ -45,83 +47,23 @@ macro_rules! scalar {
 }
 scalar!(f32, f64);
 
-/// Number of lanes of [`F32x8`].
+/// Number of lanes of [`f32x8`].
 pub const WIDTH: usize = 8;
 
-/// Eight numbers in single precision; loops over them compile to vector code.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[repr(C, align(32))]
-pub struct F32x8(pub [f32; WIDTH]);
-
-impl F32x8 {
-    /// Zero in all lanes.
-    pub const ZERO: F32x8 = F32x8([0.0; WIDTH]);
-
-    /// Returns the sum of all eight, always added in the same order.
-    #[inline]
-    pub fn sum(self) -> f32 {
-        let [a, b, c, d, e, f, g, h] = self.0;
-        ((a + e) + (c + g)) + ((b + f) + (d + h))
-    }
-}
-
-macro_rules! lanewise {
-    ($($operator:ident $function:ident $symbol:tt),*) => {$(
-        impl $operator for F32x8 {
-            type Output = F32x8;
-
-            #[inline(always)]
-            fn $function(mut self, other: F32x8) -> F32x8 {
-                // Iterators and `from_fn` are not always inlined, and then the code does not vectorise.
-                for i in 0..WIDTH {
-                    self.0[i] $symbol other.0[i];
-                }
-                self
-            }
-        }
-    )*};
-}
-lanewise!(Add add +=, Sub sub -=, Mul mul *=, Div div /=);
-
-impl Neg for F32x8 {
-    type Output = F32x8;
-
+impl Real for f32x8 {
     #[inline(always)]
-    fn neg(mut self) -> F32x8 {
-        for lane in &mut self.0 {
-            *lane = -*lane;
-        }
-        self
-    }
-}
-
-impl AddAssign for F32x8 {
-    #[inline(always)]
-    fn add_assign(&mut self, other: F32x8) {
-        *self = *self + other;
-    }
-}
-
-impl Real for F32x8 {
-    #[inline(always)]
-    fn of(value: f64) -> F32x8 {
-        F32x8([value as f32; WIDTH])
+    fn of(value: f64) -> f32x8 {
+        f32x8::from(value as f32)
     }
 
     #[inline(always)]
-    fn sqrt(mut self) -> F32x8 {
-        for lane in &mut self.0 {
-            *lane = lane.sqrt();
-        }
-        self
+    fn sqrt(self) -> f32x8 {
+        f32x8::sqrt(self)
     }
 
     #[inline(always)]
-    fn max(mut self, other: F32x8) -> F32x8 {
-        for i in 0..WIDTH {
-            self.0[i] = self.0[i].max(other.0[i]);
-        }
-        self
+    fn max(self, other: f32x8) -> f32x8 {
+        self.fast_max(other)
     }
 }
 
@@ -140,11 +82,10 @@ mod tests {
     fn every_lane_is_the_scalar_computation() {
         let a: [f32; WIDTH] = from_fn(|i| 0.3 + i as f32);
         let b: [f32; WIDTH] = from_fn(|i| 2.5 - 0.7 * i as f32);
-        let lanes = formula(F32x8(a), F32x8(b));
+        let lanes = formula(f32x8::new(a), f32x8::new(b)).to_array();
         for i in 0..WIDTH {
-            assert_eq!(lanes.0[i], formula(a[i], b[i]));
-            assert!((f64::from(lanes.0[i]) - formula(f64::from(a[i]), f64::from(b[i]))).abs() < 1e-5);
+            assert_eq!(lanes[i], formula(a[i], b[i]));
+            assert!((f64::from(lanes[i]) - formula(f64::from(a[i]), f64::from(b[i]))).abs() < 1e-5);
         }
-        assert_eq!(F32x8(from_fn(|i| i as f32)).sum(), 28.0);
     }
 }

@@ -6,7 +6,9 @@ mod warp;
 
 pub use packet::Samplers16;
 pub use sobol::{Sampler, hash, owen_sobol_2d, unit};
-pub use warp::{cosine_hemisphere, uniform_disk, uniform_sphere, uniform_triangle};
+pub use warp::{
+    cosine_direction, cosine_hemisphere, disk_point, uniform_disk, uniform_sphere, uniform_triangle,
+};
 
 /// Returns the MIS weight of a sample of density `a` against another technique of density `b` (Veach, β = 2).
 #[inline(always)]

@@ -1,36 +1,55 @@
 //! Maps from the unit square to other domains, each with the density that its comment states.
 
+use crate::math::{Lane, V3};
 use glam::{Vec2, Vec3};
 use std::f32::consts::{FRAC_PI_4, TAU};
 
 /// Returns a uniform point of the unit disk, by the concentric map (Shirley & Chiu 1997), which keeps strata compact.
-#[inline]
-pub fn uniform_disk(u: Vec2) -> Vec2 {
-    let p = 2.0 * u - Vec2::ONE;
-    let steep = p.y.abs() > p.x.abs();
-    let (r, s) = if steep { (p.y, p.x) } else { (p.x, p.y) };
-    let (sin, cos) = sin_cos_octant(if r == 0.0 { 0.0 } else { FRAC_PI_4 * (s / r) });
-    if steep { Vec2::new(r * sin, r * cos) } else { Vec2::new(r * cos, r * sin) }
+#[inline(always)]
+pub fn disk_point<L: Lane>([x, y]: [L; 2]) -> [L; 2] {
+    let (one, x, y) = (L::from(1.0), x * 2.0 - L::from(1.0), y * 2.0 - L::from(1.0));
+    let steep = y.abs().gt(x.abs());
+    let (r, s) = (L::pick(steep, y, x), L::pick(steep, x, y));
+    let at_centre = !r.abs().is_positive();
+    let [sin, cos] = sin_cos_octant(s / L::pick(at_centre, one, r) * FRAC_PI_4);
+    [r * L::pick(steep, sin, cos), r * L::pick(steep, cos, sin)]
 }
 
 /// Returns sine and cosine of an angle within ±π/4, by Taylor polynomials to a relative error of 1e-7.
 ///
 /// The library's functions would dominate the time of this map.
-#[inline]
-fn sin_cos_octant(x: f32) -> (f32, f32) {
-    let x2 = x * x;
-    let sin =
-        x * (1.0 + x2 * (-1.0 / 6.0 + x2 * (1.0 / 120.0 + x2 * (-1.0 / 5040.0 + x2 * (1.0 / 362_880.0)))));
-    let cos = 1.0 + x2 * (-0.5 + x2 * (1.0 / 24.0 + x2 * (-1.0 / 720.0 + x2 * (1.0 / 40_320.0))));
-    (sin, cos)
+#[inline(always)]
+fn sin_cos_octant<L: Lane>(x: L) -> [L; 2] {
+    let x2 = x.sq();
+    let series = |factors: [f32; 4]| {
+        let mut sum = L::from(factors[0]);
+        for factor in &factors[1..] {
+            sum = sum.mul_add(x2, L::from(*factor));
+        }
+        sum.mul_add(x2, L::from(1.0))
+    };
+    let sin = x * series([1.0 / 362_880.0, -1.0 / 5040.0, 1.0 / 120.0, -1.0 / 6.0]);
+    [sin, series([1.0 / 40_320.0, -1.0 / 720.0, 1.0 / 24.0, -0.5])]
 }
 
 /// Returns a unit vector around +z with density cosθ/π.
+#[inline(always)]
+pub fn cosine_direction<L: Lane>(u: [L; 2]) -> V3<L> {
+    let [x, y] = disk_point(u);
+    // The floor keeps the direction on the open hemisphere.
+    V3::new(x, y, (x.sq() + y.sq()).rest().max(L::from(1e-12)).sqrt())
+}
+
+/// Returns [`disk_point`] of one point.
+#[inline]
+pub fn uniform_disk(u: Vec2) -> Vec2 {
+    Vec2::from(disk_point(u.to_array()))
+}
+
+/// Returns [`cosine_direction`] of one point.
 #[inline]
 pub fn cosine_hemisphere(u: Vec2) -> Vec3 {
-    let d = uniform_disk(u);
-    // The floor keeps the direction on the open hemisphere.
-    d.extend((1.0 - d.length_squared()).max(1e-12).sqrt())
+    cosine_direction(u.to_array()).into()
 }
 
 /// Returns a unit vector with density 1/4π.
@@ -63,7 +82,7 @@ mod tests {
     fn octant_functions_match_the_library() {
         for i in -1000..=1000 {
             let x = i as f32 / 1000.0 * FRAC_PI_4;
-            let (sin, cos) = sin_cos_octant(x);
+            let [sin, cos] = sin_cos_octant(x);
             let (true_sin, true_cos) = (x as f64).sin_cos();
             assert!((sin as f64 - true_sin).abs() < 1e-7 && (cos as f64 - true_cos).abs() < 1.5e-7, "{x}");
         }

@@ -8,7 +8,7 @@ use super::Compensation;
 use super::near_surface::{BRIGHTER, Limit, NearSurface};
 use crate::lightcut::{PacketCluster, PacketCut};
 use crate::lights::VplKind;
-use base::math::Rgb;
+use base::math::{Rgb, V3};
 use glam::Vec3;
 use std::f32::consts::PI;
 use world::material::Bsdf;
@@ -46,9 +46,9 @@ impl NearSurface {
         let mut lacking = Rgb::ZERO;
         for lobe in bsdf.reflected_lobes(local) {
             let peak = PI * lobe.peak;
-            let given = peak * lobe.shape.share(self.normal, wi, lack.out) / cos;
+            let given = peak * lobe.shape.share(self.normal, wi, V3::<f32>::splat(lack.out)) / cos;
             let limited = if let Limit::Geometry(_) = lack.limit { peak.min(BRIGHTER) } else { 1.0 };
-            lacking += lobe.albedo * (given - limited * lack.kept).max(0.0);
+            lacking += lobe.albedo * f32::max(given - limited * lack.kept, 0.0);
             diffuse -= lobe.albedo;
         }
         lacking + diffuse * (1.0 - lack.kept).max(0.0)

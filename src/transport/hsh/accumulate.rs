@@ -7,7 +7,7 @@
 use super::basis::{CHANNELS, MAX_BANDS, MAX_FUNCTIONS, for_each};
 use super::radiance::{BLOCKS, Radiance};
 use crate::gradient::Incidence;
-use base::math::{F32x8, Rgb, WIDTH};
+use base::math::{Rgb, WIDTH, f32x8};
 
 /// Coefficients under construction. Rounding depends on the order in which light is added, so callers must add it in a
 /// fixed order.
@@ -17,26 +17,26 @@ pub struct Accumulator {
     /// Number of the batch's lanes in use.
     filled: usize,
     /// Value and derivatives along u and v by function, three channels each. Lanes are summed at the end.
-    sums: Box<[[F32x8; BLOCKS]; MAX_FUNCTIONS]>,
+    sums: Box<[[f32x8; BLOCKS]; MAX_FUNCTIONS]>,
 }
 
 /// Light from eight directions.
 #[derive(Clone, Copy)]
 struct Incidence8 {
-    direction: [F32x8; 3],
-    inv_dist: F32x8,
-    factor: F32x8,
-    gradient: [F32x8; 2],
-    intensity: [F32x8; CHANNELS],
+    direction: [f32x8; 3],
+    inv_dist: f32x8,
+    factor: f32x8,
+    gradient: [f32x8; 2],
+    intensity: [f32x8; CHANNELS],
 }
 
 impl Incidence8 {
     const EMPTY: Incidence8 = Incidence8 {
-        direction: [F32x8::ZERO; 3],
-        inv_dist: F32x8::ZERO,
-        factor: F32x8::ZERO,
-        gradient: [F32x8::ZERO; 2],
-        intensity: [F32x8::ZERO; CHANNELS],
+        direction: [f32x8::ZERO; 3],
+        inv_dist: f32x8::ZERO,
+        factor: f32x8::ZERO,
+        gradient: [f32x8::ZERO; 2],
+        intensity: [f32x8::ZERO; CHANNELS],
     };
 }
 
@@ -44,14 +44,14 @@ impl Accumulator {
     /// Creates an accumulator for series of `bands` bands, which is clamped to 1 to 8.
     pub fn new(bands: usize) -> Accumulator {
         let bands = bands.clamp(1, MAX_BANDS);
-        let sums = Box::new([[F32x8::ZERO; BLOCKS]; MAX_FUNCTIONS]);
+        let sums = Box::new([[f32x8::ZERO; BLOCKS]; MAX_FUNCTIONS]);
         Accumulator { bands, batch: Incidence8::EMPTY, filled: 0, sums }
     }
 
     /// Resets the accumulator to a number of bands.
     pub fn reset(&mut self, bands: usize) {
         self.bands = bands.clamp(1, MAX_BANDS);
-        self.sums.fill([F32x8::ZERO; BLOCKS]);
+        self.sums.fill([f32x8::ZERO; BLOCKS]);
         (self.batch, self.filled) = (Incidence8::EMPTY, 0);
     }
 
@@ -63,13 +63,13 @@ impl Accumulator {
         }
         let (lane, batch) = (self.filled, &mut self.batch);
         for i in 0..3 {
-            batch.direction[i].0[lane] = incidence.direction[i];
-            batch.intensity[i].0[lane] = intensity[i];
+            batch.direction[i].as_mut_array()[lane] = incidence.direction[i];
+            batch.intensity[i].as_mut_array()[lane] = intensity[i];
         }
-        batch.inv_dist.0[lane] = incidence.inv_dist;
-        batch.factor.0[lane] = incidence.factor;
-        batch.gradient[0].0[lane] = incidence.gradient[0];
-        batch.gradient[1].0[lane] = incidence.gradient[1];
+        batch.inv_dist.as_mut_array()[lane] = incidence.inv_dist;
+        batch.factor.as_mut_array()[lane] = incidence.factor;
+        batch.gradient[0].as_mut_array()[lane] = incidence.gradient[0];
+        batch.gradient[1].as_mut_array()[lane] = incidence.gradient[1];
         self.filled += 1;
         if self.filled == WIDTH {
             self.flush();
@@ -84,9 +84,9 @@ impl Accumulator {
         let mut radiance = Radiance::black(self.bands);
         for (k, sums) in self.sums.iter_mut().enumerate().take(self.bands * self.bands) {
             for (block, sum) in sums.iter().enumerate() {
-                radiance.set(block, k, sum.sum());
+                radiance.set(block, k, sum.reduce_add());
             }
-            *sums = [F32x8::ZERO; BLOCKS];
+            *sums = [f32x8::ZERO; BLOCKS];
         }
         radiance
     }
@@ -110,7 +110,7 @@ impl Accumulator {
         let Incidence8 { direction, inv_dist, factor, gradient: [slope_u, slope_v], intensity } = self.batch;
         let turning = factor * inv_dist;
         let sums = &mut self.sums;
-        for_each::<F32x8, BANDS>(direction, |k, h, h_u, h_v| {
+        for_each::<f32x8, BANDS>(direction, |k, h, h_u, h_v| {
             let (u, v) = (slope_u * h + turning * h_u, slope_v * h + turning * h_v);
             let value = factor * h;
             let sums = &mut sums[k];

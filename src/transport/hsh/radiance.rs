@@ -6,7 +6,7 @@
 use super::basis::index;
 use super::basis::{CHANNELS, MAX_BANDS, MAX_FUNCTIONS};
 use super::kernel::Kernel;
-use base::math::{F32x8, Rgb, WIDTH};
+use base::math::{Rgb, WIDTH, f32x8};
 use serde::{Deserialize, Serialize};
 
 /// Number of blocks: value and two derivatives, each by channel.
@@ -159,11 +159,11 @@ impl Radiance {
 /// Sum of products of two rows whose length is a multiple of the vectors' width.
 #[inline]
 fn dot(a: &[f32], b: &[f32]) -> f32 {
-    let mut sum = F32x8::ZERO;
+    let mut sum = f32x8::ZERO;
     for (a, b) in a.as_chunks::<WIDTH>().0.iter().zip(b.as_chunks::<WIDTH>().0) {
-        sum += F32x8(*a) * F32x8(*b);
+        sum += f32x8::new(*a) * f32x8::new(*b);
     }
-    sum.sum()
+    sum.reduce_add()
 }
 
 const _: () = assert!(stride(MAX_BANDS) == MAX_FUNCTIONS);

@@ -15,6 +15,7 @@
 //! The estimate must not depend on the representative. The visibility of the representative is strongly correlated with
 //! the cluster's error. If refinement stopped sooner where it is hidden, visible members would be missed.
 
+use base::math::Lane;
 use world::material::LobeShape;
 
 /// Expected error relative to a tight bound.
@@ -28,36 +29,36 @@ const FLOOR: f32 = 0.1;
 
 /// Geometry of a cluster seen from a point: squared distances and cosines at both ends.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Outlook {
+pub(super) struct Outlook<L = f32> {
     /// Minimum squared distance, the divisor of the bound.
-    pub near_sq: f32,
+    pub near_sq: L,
     /// Squared distance of the centre.
-    pub centre_sq: f32,
+    pub centre_sq: L,
     /// Cosines of receiver and emitter towards the centre, each times the distance; negative if facing away.
-    pub at_centre: [f32; 2],
+    pub at_centre: [L; 2],
     /// Maximum cosines.
-    pub largest: [f32; 2],
+    pub largest: [L; 2],
 }
 
 /// Returns the expected error of a cluster relative to its upper bound.
 #[inline(always)]
-pub(super) fn expected_share(o: Outlook) -> f32 {
-    let positive = |x: f32| if x > 0.0 { x } else { 0.0 };
+pub(super) fn expected_share<L: Lane>(o: Outlook<L>) -> L {
+    let one = L::from(1.0);
     // The centre is in the box, so only the limit on distances can make it nearer than the nearest point.
-    let centre_sq = if o.centre_sq > o.near_sq { o.centre_sq } else { o.near_sq };
-    let at_centre = positive(o.at_centre[0]) * positive(o.at_centre[1]);
-    let largest = o.largest[0] * o.largest[1] * centre_sq;
-    let cosines = at_centre / if largest > f32::MIN_POSITIVE { largest } else { f32::MIN_POSITIVE };
-    let cosines = if cosines < 1.0 { cosines } else { 1.0 };
-    let share = SPREAD * (o.near_sq / centre_sq * (FLOOR + (1.0 - FLOOR) * cosines)).sqrt();
-    SCALE * if share < 1.0 { share } else { 1.0 }
+    let centre_sq = o.centre_sq.max(o.near_sq);
+    let at_centre = o.at_centre[0].positive() * o.at_centre[1].positive();
+    let largest = (o.largest[0] * o.largest[1] * centre_sq).max(L::from(1e-37));
+    let cosines = (at_centre * largest.recip()).min(one);
+    let nearness = o.near_sq / centre_sq;
+    let share = (nearness * cosines.mul_add(L::from(1.0 - FLOOR), L::from(FLOOR))).sqrt() * SPREAD;
+    share.min(one) * SCALE
 }
 
 /// Returns the bound of a lobe in the direction at `z` along its axis and at `distance`, times the distance. It takes
 /// the place of the cosine in [`Outlook::at_centre`].
 #[inline(always)]
-pub(super) fn lobe_at(z: f32, distance: f32, width_sq: f32) -> f32 {
-    distance * LobeShape::max_share(z / if distance > 0.0 { distance } else { 1.0 }, width_sq)
+pub(super) fn lobe_at<L: Lane>(z: L, distance: L, width_sq: f32) -> L {
+    distance * LobeShape::max_share(z * distance.max(L::from(1e-37)).recip(), width_sq)
 }
 
 #[cfg(test)]

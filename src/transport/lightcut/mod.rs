@@ -15,6 +15,7 @@
 //! `gather_all` is the exact sum that they approximate.
 
 mod clamp;
+mod cluster_box;
 mod coherence;
 pub mod expected;
 #[cfg(test)]
@@ -40,8 +41,8 @@ pub use receiver::Receiver;
 pub use reconstruction::ReconstructionCut;
 pub use settings::{CutCounts, CutSettings};
 pub use shadow_rays::{to_vpl, to_vpl16};
+pub use single::Lightcut;
 #[cfg(test)]
 pub use single::gather_all;
-pub use single::{Lightcut, OffsetBox};
 pub use transfer::Transfer;
 pub use visibility::{PacketVisibility, RayVisibility, Visibility};

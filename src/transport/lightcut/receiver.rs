@@ -3,7 +3,6 @@
 //! The weight determines the meaning of the cut's sum: BRDF · cosine gives reflected radiance, the cosine alone
 //! irradiance.
 
-use super::OffsetBox;
 use base::math::{Frame, Rgb};
 use glam::Vec3;
 use std::f32::consts::FRAC_1_PI;
@@ -168,23 +167,5 @@ impl<'m> Receiver<'m> {
                 if wi.z > 0.0 { bsdf.eval(self.wo, wi) * wi.z } else { Rgb::ZERO }
             }
         }
-    }
-
-    /// Returns an upper bound, by channel, of the weight of the directions in a box; `local` is the box in the shading
-    /// frame.
-    #[inline]
-    pub(super) fn max_response(&self, offsets: &OffsetBox, local: &OffsetBox) -> Rgb {
-        let cos_max = local.max_cos_z();
-        if cos_max <= 0.0 {
-            return Rgb::ZERO;
-        }
-        if let ReceiverMaterial::Lambert(brdf) = &self.material {
-            return *brdf * cos_max;
-        }
-        self.max_reflection(&DirectionBound {
-            cos_i_max: cos_max,
-            cos_i_min: local.min_cos_z(),
-            cos_mirror_max: offsets.turned(&self.mirror).max_cos_z(),
-        })
     }
 }

@@ -5,7 +5,7 @@
 
 use super::Receiver;
 use crate::lights::{LightTrees, Lights, Vpl, VplKind, min_dist_sq, near_sq_of_size};
-use base::math::Rgb;
+use base::math::{Lane, Rgb, V3};
 
 /// Transfer from all VPLs of a scene.
 #[derive(Clone, Copy, Debug)]
@@ -40,29 +40,35 @@ impl<'a> Transfer<'a> {
         }
     }
 
+    /// Returns the unit direction to a VPL, 0 if it has none, and the irradiance across it per unit intensity, at one
+    /// position or at sixteen.
+    #[inline(always)]
+    pub(super) fn incident<L: Lane>(&self, position: V3<L>, vpl: &Vpl, kind: VplKind) -> (V3<L>, L) {
+        let one = L::from(1.0);
+        if kind == VplKind::Directional {
+            return (V3::splat(vpl.position), one);
+        }
+        let offset = V3::splat(vpl.position) - position;
+        let inverse = offset.length_sq().max(L::from(1e-37)).rsqrt();
+        let wi = offset.times(inverse);
+        let emitted = match kind {
+            VplKind::Oriented => (-wi.along(vpl.normal())).positive(),
+            VplKind::Lobed => self.trees.profiles.lobes[vpl.lobe()].shares(-wi),
+            _ => match vpl.spot_profile() {
+                None => one,
+                Some(spot) => {
+                    let spot = &self.trees.profiles.spots[spot];
+                    L::from_fn(|lane| spot.falloff(-wi.lane(lane)))
+                }
+            },
+        };
+        (wi, emitted * inverse.sq().min(L::from(1.0 / self.near_sq(vpl, kind))))
+    }
+
     /// Contribution of a visible VPL of unit intensity.
     #[inline]
     pub fn unshadowed(&self, receiver: &Receiver, vpl: &Vpl, kind: VplKind) -> Rgb {
-        if kind == VplKind::Directional {
-            return receiver.response(vpl.position);
-        }
-        let offset = vpl.position - receiver.position();
-        let dist_sq = offset.length_squared();
-        if dist_sq == 0.0 {
-            return Rgb::ZERO; // A VPL on the receiver itself has no direction.
-        }
-        let wi = offset / dist_sq.sqrt();
-        let emitted = match kind {
-            VplKind::Oriented => -vpl.normal().dot(wi),
-            VplKind::Lobed => self.trees.profiles.lobes[vpl.lobe()].share(-wi),
-            _ => match vpl.spot_profile() {
-                None => 1.0,
-                Some(profile) => self.trees.profiles.spots[profile].falloff(-wi),
-            },
-        };
-        if emitted <= 0.0 {
-            return Rgb::ZERO;
-        }
-        receiver.response(wi) * (emitted / dist_sq.max(self.near_sq(vpl, kind)))
+        let (wi, irradiance) = self.incident(V3::splat(receiver.position()), vpl, kind);
+        if irradiance > 0.0 { receiver.response(wi.into()) * irradiance } else { Rgb::ZERO }
     }
 }

@@ -1,6 +1,6 @@
 //! Directional profiles of virtual lights: intensity in a direction relative to the maximum.
 
-use base::math::{F32x16, Vec3x16};
+use base::math::{Lane, V3};
 use glam::Vec3;
 use std::f32::consts::PI;
 use std::sync::Arc;
@@ -76,13 +76,13 @@ impl LobeProfile {
     /// Fraction of the bound sent in the unit direction `away`, in [0, 1].
     #[inline]
     pub fn share(&self, away: Vec3) -> f32 {
-        self.shape.share(self.normal, self.towards_light, away)
+        self.shares(V3::splat(away))
     }
 
-    /// Returns [`LobeProfile::share`] in all lanes.
-    #[inline]
-    pub fn share16(&self, away: &Vec3x16) -> F32x16 {
-        self.shape.share16(self.normal, self.towards_light, away)
+    /// Returns [`LobeProfile::share`] of one or sixteen directions.
+    #[inline(always)]
+    pub fn shares<L: Lane>(&self, away: V3<L>) -> L {
+        self.shape.share(self.normal, self.towards_light, away)
     }
 
     /// Returns [`LobeProfile::share`] and its derivative by `away`, perpendicular to `away`, from differences.

@@ -187,7 +187,7 @@ fn lanes_of_lobes_are_those_of_single_directions() {
     for lobe in profiles().lobes {
         let mut away = Vec3x16::ZERO;
         (0..LANES - 1).for_each(|lane| away.set(lane, numbers.direction()));
-        let shares = lobe.share16(&away);
+        let shares = lobe.shares(away.load()).to_array();
         for (lane, share) in shares.into_iter().enumerate() {
             let single = if lane < LANES - 1 { lobe.share(away.get(lane)) } else { 0.0 };
             assert!((share - single).abs() < 1e-5, "{share} {single}");

@@ -112,7 +112,7 @@ impl Packet {
         if depth == 1 && policy.sees() {
             for lane in lanes_in(found) {
                 let (bsdf, out) = (bsdfs.lane(lane), -self.rays.get(lane).direction);
-                let albedo = (!bsdf.has_delta()).then(|| world.guide_albedo(&surfaces.get(lane), bsdf, out));
+                let albedo = (!bsdf.has_delta()).then(|| world.guide_albedo(&surfaces.get(lane), &bsdf, out));
                 policy.see(self.slot[lane], albedo, self.normal.get(lane));
             }
         }
@@ -165,7 +165,7 @@ impl Packet {
         for lane in lanes_in(guided.lanes) {
             let (position, normal) = (surfaces.position.get(lane), self.normal.get(lane));
             let (frame, bsdf, wo) = (surfaces.frame(lane), bsdfs.lane(lane), bsdfs.wo(lane));
-            let vertex = LaneVertex { lane, position, normal, frame, bsdf, wo };
+            let vertex = LaneVertex { lane, position, normal, frame, bsdf: &bsdf, wo };
             guided.turn(world, &vertex, choices.y[lane], places.get(lane), &mut samples);
         }
         let roulette = if depth >= ROULETTE_DEPTH { self.samplers.number(pair + 3) } else { [0.0; LANES] };
@@ -274,7 +274,7 @@ impl Packet {
         let mut chained = [LobeSet::default(); LANES];
         for lane in lanes_in(bsdfs.smooth() & found) {
             let whole = bsdfs.lane(lane);
-            chained[lane] = policy.followed(whole);
+            chained[lane] = policy.followed(&whole);
             let bsdf = whole.without(chained[lane]);
             if !bsdf.has_smooth() {
                 continue;

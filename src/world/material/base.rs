@@ -9,7 +9,7 @@ use super::albedo::albedo;
 use super::fresnel;
 use super::microfacet::Microfacets;
 use super::table::{ANGLES, AngleTable, direction, rule};
-use base::math::{F32x16, LANES, Rgb};
+use base::math::{Lane, Rgb, V3};
 use glam::Vec3;
 use scene::{Coat, Fresnel};
 use std::f32::consts::{FRAC_1_PI, PI};
@@ -57,58 +57,23 @@ impl PartialEq for CoatInterface {
 }
 
 impl CoatInterface {
-    /// Returns the share of the light at `cos` > 0 that passes; 1 if there is no coat.
-    #[inline]
-    pub fn transmittance(&self, cos: f32) -> f32 {
+    /// Returns the share of the light at each cosine that passes; 1 if there is no coat. Cosines below 0 count as 0.
+    #[inline(always)]
+    pub fn transmittance<L: Lane>(&self, cos: L) -> L {
         match self {
-            CoatInterface::None => 1.0,
-            CoatInterface::Smooth(eta) => 1.0 - fresnel::dielectric(cos, *eta),
-            CoatInterface::Burley => 1.0 - 0.5 * fresnel::schlick_weight(cos),
-            CoatInterface::Rough(coat) => coat.transmittance.lookup(cos),
+            CoatInterface::None => L::from(1.0),
+            CoatInterface::Smooth(eta) => fresnel::dielectric(cos, *eta).rest(),
+            CoatInterface::Burley => (fresnel::schlick_weight(cos) * 0.5).rest(),
+            CoatInterface::Rough(coat) => cos.each(|cos| coat.transmittance.lookup(cos)),
         }
     }
 
     /// Returns the maximum transmittance at `cos` > 0 or any smaller cosine.
-    #[inline]
-    pub fn max_transmittance(&self, cos: f32) -> f32 {
+    #[inline(always)]
+    pub fn max_transmittance<L: Lane>(&self, cos: L) -> L {
         match self {
-            CoatInterface::Rough(coat) => coat.max_transmittance.lookup(cos),
+            CoatInterface::Rough(coat) => cos.each(|cos| coat.max_transmittance.lookup(cos)),
             _ => self.transmittance(cos),
-        }
-    }
-
-    /// Returns [`CoatInterface::transmittance`] in all lanes. Cosines below 0 count as 0.
-    #[inline]
-    pub fn transmittance16(&self, cos: &F32x16) -> F32x16 {
-        // One loop per kind: a choice within the loop would not compile to vector code.
-        let mut passes = [1.0; LANES];
-        match self {
-            CoatInterface::None => {}
-            CoatInterface::Smooth(eta) => {
-                for l in 0..LANES {
-                    passes[l] = 1.0 - fresnel::dielectric(cos[l].clamp(0.0, 1.0), *eta);
-                }
-            }
-            CoatInterface::Burley => {
-                for l in 0..LANES {
-                    passes[l] = 1.0 - 0.5 * fresnel::schlick_weight(cos[l].clamp(0.0, 1.0));
-                }
-            }
-            CoatInterface::Rough(coat) => {
-                for l in 0..LANES {
-                    passes[l] = coat.transmittance.lookup(cos[l]);
-                }
-            }
-        }
-        passes
-    }
-
-    /// Returns [`CoatInterface::max_transmittance`] in all lanes.
-    #[inline]
-    pub fn max_transmittance16(&self, cos: &F32x16) -> F32x16 {
-        match self {
-            CoatInterface::Rough(coat) => cos.map(|cos| coat.max_transmittance.lookup(cos)),
-            _ => self.transmittance16(cos),
         }
     }
 }
@@ -147,11 +112,11 @@ impl BaseModel {
         albedo * self.factor / (1.0 - returned * self.internal_reflectance)
     }
 
-    /// Returns the share of the light from one direction that is reflected, for the coat's transmittance in that
-    /// direction.
-    #[inline]
-    pub fn albedo(&self, brdf: Rgb, transmittance: f32) -> Rgb {
-        brdf * (PI * transmittance * self.mean_transmittance)
+    /// Returns the share of the light from one direction that is reflected, from the BRDF times the coat's
+    /// transmittance in that direction.
+    #[inline(always)]
+    pub fn albedo<L: Lane>(&self, brdf: V3<L>) -> V3<L> {
+        brdf.times(L::from(PI * self.mean_transmittance))
     }
 }
 

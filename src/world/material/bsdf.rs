@@ -2,26 +2,14 @@
 //!
 //! Units: `eval` is 1/sr, without the cosine; `pdf` is per solid angle.
 
-use super::lobe::{Directions, DullLobe, LobeModel, MAX_LOBES, ReflectedLobe, mean};
+use super::lobe::{DullLobe, LobeModel, ReflectedLobe, mean};
 use super::lobe_set::LobeSet;
 use super::model::Bsdf;
-use base::math::Rgb;
+use super::seen::Seen;
+use base::math::{Rgb, V3};
 use glam::Vec3;
 use scene::MaterialId;
 use std::f32::consts::{FRAC_1_PI, PI};
-
-/// Direction towards the eye and the quantities that depend on it alone.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Outgoing {
-    /// Direction on the side of the normal (z > 0), unless light may be transmitted.
-    pub wo: Vec3,
-    /// Transmittance of the coat.
-    pub transmittance: f32,
-    /// Probability of sampling the base.
-    pub base_probability: f32,
-    /// Probabilities of sampling the lobes.
-    pub probabilities: [f32; MAX_LOBES],
-}
 
 impl<'m> Bsdf<'m> {
     /// Returns the value for light from `wi` seen from `wo`, without delta lobes. The directions may be on different
@@ -48,7 +36,9 @@ impl<'m> Bsdf<'m> {
         if self.is_lambert() {
             return (self.base, wi.z * FRAC_1_PI);
         }
-        self.eval_pdf_layered(&self.outgoing(wo), wi)
+        let seen = self.seen(wo);
+        let (value, pdf) = seen.eval_pdf::<f32>(&seen.facet(V3::splat(wi)));
+        (value.into(), pdf)
     }
 
     /// Returns true if light is reflected diffusely, so that photons and virtual lights are stored on the surface.
@@ -156,14 +146,8 @@ impl<'m> Bsdf<'m> {
     pub fn eval_lobes(&self, lobes: LobeSet, wo: Vec3, wi: Vec3) -> Rgb {
         let side = self.side(wo);
         let (wo, wi) = (Vec3::new(wo.x, wo.y, wo.z * side), Vec3::new(wi.x, wi.y, wi.z * side));
-        let Some(directions) = self.directions(wo, wi) else { return Rgb::ZERO };
-        let mut value = Rgb::ZERO;
-        for (slot, lobe) in self.model.lobes.iter().enumerate() {
-            if lobes.has(slot) {
-                value += lobe.eval_pdf(self.scales[slot], 0.0, &directions).0;
-            }
-        }
-        value
+        let seen = self.seen(wo);
+        seen.eval_lobes::<f32>(lobes, &seen.facet(V3::splat(wi))).into()
     }
 
     /// Returns true if the material is Lambertian and nothing else.
@@ -216,6 +200,12 @@ impl<'m> Bsdf<'m> {
         self.model.lobe_list == other.model.lobe_list
     }
 
+    /// Returns true if the materials differ in their colours only.
+    #[inline]
+    pub(super) fn is_alike(&self, other: &Bsdf) -> bool {
+        self.same_lobes(other) && self.coat() == other.coat()
+    }
+
     /// Lists slot and model of each lobe that is neither a delta lobe nor a sharp lobe and reflects anything.
     pub fn dull_lobes(&self) -> impl Iterator<Item = (usize, DullLobe<'m>)> {
         let lobes = self.model.lobes.iter().zip(self.scales).enumerate();
@@ -254,7 +244,7 @@ impl<'m> Bsdf<'m> {
         if !(cos > 0.0) {
             return Rgb::ZERO;
         }
-        let mut albedo = self.model.base.albedo(self.base, self.coat_transmittance(cos));
+        let mut albedo = self.base_albedo(cos);
         for (slot, lobe) in self.model.lobes.iter().enumerate() {
             if let Some(more) = lobe.diffuse_albedo(self.scales[slot], cos) {
                 albedo += more;
@@ -276,7 +266,7 @@ impl<'m> Bsdf<'m> {
         if !(cos > 0.0) {
             return Rgb::ZERO;
         }
-        let mut albedo = self.model.base.albedo(self.base, self.coat_transmittance(cos));
+        let mut albedo = self.base_albedo(cos);
         for (slot, lobe) in self.model.lobes.iter().enumerate() {
             albedo += lobe.albedo(self.scales[slot], cos);
         }
@@ -322,91 +312,15 @@ impl<'m> Bsdf<'m> {
         if wo.z < 0.0 && self.model.two_sided && !self.model.kinds.transmit { -1.0 } else { 1.0 }
     }
 
-    /// Computes the quantities of evaluation and sampling that depend on `wo` alone.
+    /// Prepares the material for directions that were turned to the side of the normal.
     #[inline(always)]
-    pub(super) fn outgoing(&self, wo: Vec3) -> Outgoing {
-        let transmittance = self.coat_transmittance(wo.z);
-        // Light that passes gaps in a surface may reach its back.
-        let base = if wo.z > 0.0 { mean(self.model.base.albedo(self.base, transmittance)) } else { 0.0 };
-        // Most materials have at most one lobe.
-        let (base_probability, probabilities) = match &self.model.lobes[..] {
-            [] => (if base > 0.0 { 1.0 } else { 0.0 }, [0.0; MAX_LOBES]),
-            [lobe] => {
-                let probability = match base > 0.0 {
-                    true => base / (base + lobe.sampling_weight(self.scales[0], wo, transmittance)),
-                    false => 0.0,
-                };
-                let mut probabilities = [0.0; MAX_LOBES];
-                probabilities[0] = 1.0 - probability;
-                (probability, probabilities)
-            }
-            _ => self.probabilities(base, wo, transmittance),
-        };
-        Outgoing { wo, transmittance, base_probability, probabilities }
+    pub(super) fn seen(&self, wo: Vec3) -> Seen<'m, f32> {
+        Seen::new(self.model, V3::splat(self.base), &self.scales.map(V3::splat), V3::splat(wo))
     }
 
-    /// Computes the probabilities of sampling the base, whose albedo is `base`, and each lobe.
-    #[inline(never)]
-    fn probabilities(&self, base: f32, wo: Vec3, transmittance: f32) -> (f32, [f32; MAX_LOBES]) {
-        let mut weights = [0.0; MAX_LOBES];
-        let mut total = base;
-        for (slot, lobe) in self.model.lobes.iter().enumerate() {
-            weights[slot] = lobe.sampling_weight(self.scales[slot], wo, transmittance);
-            total += weights[slot];
-        }
-        let base_probability = if base > 0.0 { base / total } else { 0.0 };
-        let mut probabilities = [0.0; MAX_LOBES];
-        let mut left = 1.0 - base_probability;
-        let last = self.model.lobes.len() - 1;
-        for slot in 0..last {
-            probabilities[slot] = weights[slot] / total; // NaN, if nothing is scattered, chooses nothing.
-            left -= probabilities[slot];
-        }
-        // The last lobe takes the remainder, so that rounding loses nothing.
-        probabilities[last] = left.max(0.0);
-        (base_probability, probabilities)
-    }
-
-    /// Returns value and density of a material that is more than Lambertian.
-    #[inline(always)]
-    pub(super) fn eval_pdf_layered(&self, outgoing: &Outgoing, wi: Vec3) -> (Rgb, f32) {
-        if !self.model.kinds.smooth {
-            return self.eval_pdf_base(outgoing, wi);
-        }
-        match self.directions(outgoing.wo, wi) {
-            Some(directions) => self.eval_pdf_between(outgoing, &directions),
-            None => (Rgb::ZERO, 0.0),
-        }
-    }
-
-    /// Pairs two directions; `None` if no facet reflects one into the other and no light is transmitted.
-    #[inline(always)]
-    fn directions(&self, wo: Vec3, wi: Vec3) -> Option<Directions> {
-        // Refraction does not use the facet between opposite directions.
-        let opposite = || self.model.kinds.across.then_some(Directions { wo, wi, half: Vec3::Z });
-        Directions::new(wo, wi).or_else(opposite)
-    }
-
-    /// Returns value and density of the base alone.
-    #[inline(always)]
-    fn eval_pdf_base(&self, outgoing: &Outgoing, wi: Vec3) -> (Rgb, f32) {
-        if outgoing.base_probability == 0.0 || wi.z < 0.0 {
-            return (Rgb::ZERO, 0.0);
-        }
-        let transmittance = outgoing.transmittance * self.coat_transmittance(wi.z);
-        (self.base * transmittance, outgoing.base_probability * wi.z * FRAC_1_PI)
-    }
-
-    /// Returns value and density of base and lobes.
+    /// Returns the share of the light from the cosine `cos` that the base reflects.
     #[inline]
-    pub(super) fn eval_pdf_between(&self, outgoing: &Outgoing, directions: &Directions) -> (Rgb, f32) {
-        let (mut value, mut pdf) = self.eval_pdf_base(outgoing, directions.wi);
-        for (slot, lobe) in self.model.lobes.iter().enumerate() {
-            let (scale, probability) = (self.scales[slot], outgoing.probabilities[slot]);
-            let (lobe_value, lobe_pdf) = lobe.eval_pdf(scale, probability, directions);
-            value += lobe_value;
-            pdf += lobe_pdf;
-        }
-        (value, pdf)
+    fn base_albedo(&self, cos: f32) -> Rgb {
+        self.model.base.albedo::<f32>(V3::splat(self.base * self.coat_transmittance(cos))).into()
     }
 }

@@ -3,75 +3,70 @@
 //! Papers: the diffuse average follows Egan and Hilgeman, *Spectral reflectance of particulate materials*, 1973, and
 //! d'Eon and Irving, *A Quantized-Diffusion Model for Rendering Translucent Materials*, 2011.
 
-use base::math::{F32x16, LANES, Rgb, Vec3x16};
+use base::math::{Lane, Rgb, V3};
 use scene::Fresnel;
 
 /// Reflection and refraction of a ray at a smooth dielectric interface.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Refraction {
+pub(super) struct Refraction<L = f32> {
     /// Share of the power that is reflected.
-    pub reflectance: f32,
+    pub reflectance: L,
     /// Cosine of the refracted ray to the normal on its side, >= 0; 0 at total reflection.
-    pub cos_t: f32,
+    pub cos_t: L,
     /// Index of refraction on the far side over that on the ray's side.
-    pub eta: f32,
+    pub eta: L,
 }
 
 /// Solves a dielectric interface for a ray on the side that the sign of `cos_i` tells. `eta` is the index of refraction
 /// behind the normal over the index in front.
-#[inline]
-pub(super) fn interface(cos_i: f32, eta: f32) -> Refraction {
-    let eta_it = if cos_i >= 0.0 { eta } else { 1.0 / eta };
-    let inv_eta = 1.0 / eta_it;
-    let cos_i = cos_i.abs().min(1.0);
-    let cos_t_sq = 1.0 - inv_eta * inv_eta * (1.0 - cos_i * cos_i);
+#[inline(always)]
+pub(super) fn interface<L: Lane>(cos_i: L, eta: f32) -> Refraction<L> {
+    let one = L::from(1.0);
+    let is_behind = L::from(0.0).gt(cos_i);
+    let cos_i = cos_i.abs().min(one);
     if eta == 1.0 {
-        return Refraction { reflectance: 0.0, cos_t: cos_i, eta: 1.0 };
+        return Refraction { reflectance: L::from(0.0), cos_t: cos_i, eta: one };
     }
-    if cos_t_sq <= 0.0 || cos_i == 0.0 {
-        return Refraction { reflectance: 1.0, cos_t: cos_t_sq.max(0.0).sqrt(), eta: eta_it };
-    }
-    let cos_t = cos_t_sq.sqrt();
+    let eta_it = L::pick(is_behind, L::from(1.0 / eta), L::from(eta));
+    let cos_t_sq = (cos_i.sq().rest() / eta_it.sq()).rest();
+    let cos_t = cos_t_sq.positive().sqrt();
     let r_s = (cos_i - eta_it * cos_t) / (cos_i + eta_it * cos_t);
     let r_p = (cos_t - eta_it * cos_i) / (cos_t + eta_it * cos_i);
-    Refraction { reflectance: 0.5 * (r_s * r_s + r_p * r_p), cos_t, eta: eta_it }
+    let is_partial = cos_t_sq.is_positive() & cos_i.is_positive();
+    let reflectance = L::pick(is_partial, (r_s.sq() + r_p.sq()) * 0.5, one);
+    Refraction { reflectance, cos_t, eta: eta_it }
 }
 
 /// Returns the reflectance of a dielectric seen from the side of the normal.
-#[inline]
-pub(super) fn dielectric(cos_i: f32, eta: f32) -> f32 {
-    interface(cos_i, eta).reflectance
+#[inline(always)]
+pub(super) fn dielectric<L: Lane>(cos_i: L, eta: f32) -> L {
+    let cos_i = cos_i.max(L::from(1e-7)).min(L::from(1.0));
+    let cos_t = (cos_i.sq().rest() * (1.0 / (eta * eta))).rest().positive().sqrt();
+    let r_s = (cos_i - cos_t * eta) * (cos_i + cos_t * eta).recip();
+    let r_p = (cos_t - cos_i * eta) * (cos_t + cos_i * eta).recip();
+    (r_s.sq() + r_p.sq()) * 0.5
 }
 
-/// Returns the reflectance of a conductor of index `eta + i k`.
-#[inline]
-pub(super) fn conductor(cos_i: f32, eta: Rgb, k: Rgb) -> Rgb {
-    let cos_i = cos_i.clamp(0.0, 1.0);
-    // Four channels without branches compile to one vector; the last is unused.
-    let (eta, k) = ([eta.x, eta.y, eta.z, 1.0], [k.x, k.y, k.z, 1.0]);
-    let [r, g, b, _] = std::array::from_fn(|i| conductor_channel(cos_i, eta[i], k[i]));
-    Rgb::new(r, g, b)
-}
-
-/// Returns the reflectance of a conductor in one channel.
-#[inline]
-fn conductor_channel(cos_i: f32, eta: f32, k: f32) -> f32 {
-    let cos_sq = cos_i * cos_i;
-    let sin_sq = 1.0 - cos_sq;
+/// Returns the reflectance of a conductor of index `eta + i k` in one channel, at a cosine in 0..=1.
+#[inline(always)]
+fn conductor<L: Lane>(cos_i: L, eta: f32, k: f32) -> L {
+    let tiny = L::from(1e-30);
+    let cos_sq = cos_i.sq();
+    let sin_sq = cos_sq.rest();
     // The complex cosine of refraction times the index is a + i b. Its squared modulus is a² + b², and a² is half of
     // modulus + difference, rewritten to avoid the cancellation that occurs for metals.
-    let difference = eta * eta - k * k - sin_sq;
-    let cross = 2.0 * eta * k;
-    let modulus = (difference * difference + cross * cross).sqrt();
+    let difference = L::from(eta * eta - k * k) - sin_sq;
+    let cross = L::from(2.0 * eta * k);
+    let modulus = (difference.sq() + cross.sq()).sqrt();
     // The floors here and below only turn 0/0 into 0 or 1.
-    let sum = (modulus + difference.abs()).max(1e-30);
-    let twice_a_sq = if difference >= 0.0 { sum } else { cross * (cross / sum) };
-    let a = (0.5 * twice_a_sq).sqrt();
-    let (sum, twice) = (modulus + cos_sq + 1e-30, 2.0 * cos_i * a);
-    let r_s = (sum - twice) / (sum + twice);
-    let (sum, twice) = (modulus * cos_sq + sin_sq * sin_sq + 1e-30, twice * sin_sq);
-    let r_p = r_s * ((sum - twice) / (sum + twice));
-    (0.5 * (r_s + r_p)).clamp(0.0, 1.0)
+    let sum = (modulus + difference.abs()).max(tiny);
+    let twice_a_sq = L::pick(L::from(0.0).gt(difference), cross * (cross * sum.recip()), sum);
+    let twice = cos_i * (twice_a_sq * 0.5).sqrt() * 2.0;
+    let sum = modulus + cos_sq + tiny;
+    let r_s = (sum - twice) * (sum + twice).recip();
+    let (sum, twice) = (modulus * cos_sq + sin_sq.sq() + tiny, twice * sin_sq);
+    let r_p = r_s * ((sum - twice) * (sum + twice).recip());
+    ((r_s + r_p) * 0.5).positive().min(L::from(1.0))
 }
 
 /// Returns the cosine-weighted mean of the reflectance over the hemisphere, by the fits that Mitsuba's `plastic` uses.
@@ -90,16 +85,10 @@ pub(super) fn diffuse_reflectance(eta: f32) -> f32 {
 }
 
 /// Returns the weight of the reflectance at grazing incidence in Schlick's approximation.
-#[inline]
-pub(super) fn schlick_weight(cos: f32) -> f32 {
-    let m = (1.0 - cos).clamp(0.0, 1.0);
-    m * m * (m * m) * m
-}
-
-/// Returns Schlick's approximation between the reflectances at normal and grazing incidence.
-#[inline]
-fn schlick(cos: f32, normal: Rgb, edge: f32) -> Rgb {
-    normal + (Rgb::splat(edge) - normal) * schlick_weight(cos)
+#[inline(always)]
+pub(super) fn schlick_weight<L: Lane>(cos: L) -> L {
+    let m = cos.rest().positive().min(L::from(1.0));
+    m.sq().sq() * m
 }
 
 /// Reflectance of a (micro)surface by angle of incidence.
@@ -107,60 +96,44 @@ pub(super) trait Curve {
     /// Returns the reflectance for light at `cos_i` to the (micro)surface's normal, on its front side.
     fn reflectance(&self, cos_i: f32) -> Rgb;
 
-    /// Returns [`Curve::reflectance`] in all lanes.
-    fn reflectance16(&self, cos_i: &F32x16) -> Vec3x16;
+    /// Returns [`Curve::reflectance`] for any lanes.
+    fn reflected<L: Lane>(&self, cos_i: L) -> V3<L>;
 
     /// Returns the maximum reflectance at any cosine >= `cos_min`, given the reflectance `normal` at normal incidence.
     ///
     /// The larger of the values at both ends is the maximum: a dielectric's reflectance grows towards grazing
     /// incidence, a conductor's may first fall and then rises to 1, and Schlick's approximation is monotonic.
-    fn max_reflectance(&self, cos_min: f32, normal: Rgb) -> Rgb;
+    fn max_reflectance<L: Lane>(&self, cos_min: L, normal: Rgb) -> V3<L>;
 }
 
 impl Curve for Fresnel {
     #[inline]
     fn reflectance(&self, cos_i: f32) -> Rgb {
-        match *self {
-            Fresnel::One => Rgb::ONE,
-            Fresnel::Dielectric(eta) => Rgb::splat(dielectric(cos_i.max(0.0), eta)),
-            Fresnel::Conductor { eta, k } => conductor(cos_i, eta, k),
-            Fresnel::Schlick { normal, edge } => schlick(cos_i, normal, edge),
-        }
+        self.reflected(cos_i).into()
     }
 
-    #[inline]
-    fn reflectance16(&self, cos_i: &F32x16) -> Vec3x16 {
+    #[inline(always)]
+    fn reflected<L: Lane>(&self, cos_i: L) -> V3<L> {
         match *self {
-            Fresnel::One => Vec3x16 { x: [1.0; LANES], y: [1.0; LANES], z: [1.0; LANES] },
-            Fresnel::Dielectric(eta) => {
-                let mut r = [0.0; LANES];
-                for l in 0..LANES {
-                    r[l] = dielectric(if cos_i[l] > 0.0 { cos_i[l] } else { 0.0 }, eta);
-                }
-                Vec3x16 { x: r, y: r, z: r }
+            Fresnel::One => V3::grey(L::from(1.0)),
+            Fresnel::Dielectric(eta) => V3::grey(dielectric(cos_i, eta)),
+            Fresnel::Conductor { eta, k } => {
+                let cos_i = cos_i.positive().min(L::from(1.0));
+                let channel = |eta, k| conductor(cos_i, eta, k);
+                V3::new(channel(eta.x, k.x), channel(eta.y, k.y), channel(eta.z, k.z))
             }
             Fresnel::Schlick { normal, edge } => {
-                let mut r = Vec3x16::default();
-                (0..LANES).for_each(|l| r.set(l, schlick(cos_i[l], normal, edge)));
-                r
-            }
-            Fresnel::Conductor { eta, k } => {
-                let channel = |eta: f32, k: f32| {
-                    let mut r = [0.0; LANES];
-                    for l in 0..LANES {
-                        r[l] = conductor_channel(cos_i[l].clamp(0.0, 1.0), eta, k);
-                    }
-                    r
-                };
-                Vec3x16 { x: channel(eta.x, k.x), y: channel(eta.y, k.y), z: channel(eta.z, k.z) }
+                V3::splat(normal) + V3::splat(Rgb::splat(edge) - normal).times(schlick_weight(cos_i))
             }
         }
     }
 
-    fn max_reflectance(&self, cos_min: f32, normal: Rgb) -> Rgb {
+    #[inline(always)]
+    fn max_reflectance<L: Lane>(&self, cos_min: L, normal: Rgb) -> V3<L> {
+        let most = self.reflected(cos_min);
         match *self {
-            Fresnel::Conductor { .. } | Fresnel::Schlick { .. } => self.reflectance(cos_min).max(normal),
-            _ => self.reflectance(cos_min),
+            Fresnel::Conductor { .. } | Fresnel::Schlick { .. } => most.max(V3::splat(normal)),
+            Fresnel::One | Fresnel::Dielectric(_) => most,
         }
     }
 }
@@ -186,11 +159,11 @@ mod tests {
     #[test]
     fn a_conductor_without_absorption_is_a_dielectric() {
         for cos in [1.0, 0.9, 0.5, 0.1, 0.01] {
-            let r = conductor(cos, Rgb::splat(1.5), Rgb::ZERO).x;
+            let r = conductor(cos, 1.5, 0.0);
             assert!((r - dielectric(cos, 1.5)).abs() < 1e-5, "{cos}: {r} {}", dielectric(cos, 1.5));
         }
-        assert!(conductor(0.0, Rgb::ONE, Rgb::ZERO).is_finite());
-        assert!(conductor(0.0, Rgb::ZERO, Rgb::ONE).is_finite());
+        assert!(conductor(0.0, 1.0, 0.0).is_finite());
+        assert!(conductor(0.0, 0.0, 1.0).is_finite());
     }
 
     #[test]
@@ -222,8 +195,8 @@ mod tests {
             };
             let cos_min = next();
             let cos = cos_min + (1.0 - cos_min) * next();
-            let excess =
-                fresnel.reflectance(cos) - fresnel.max_reflectance(cos_min, fresnel.reflectance(1.0));
+            let excess = fresnel.reflectance(cos)
+                - Rgb::from(fresnel.max_reflectance(cos_min, fresnel.reflectance(1.0)));
             assert!(excess.max_element() < 5e-6, "{fresnel:?} {cos_min} {cos} {excess}");
         }
     }

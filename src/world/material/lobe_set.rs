@@ -5,9 +5,6 @@
 pub struct LobeSet(pub(super) u8);
 
 impl LobeSet {
-    /// All lobes.
-    pub(super) const ALL: LobeSet = LobeSet(!0);
-
     /// Returns true if the set is empty.
     #[inline]
     pub fn is_empty(self) -> bool {

@@ -7,7 +7,7 @@
 //! `principledthin`, `mask` and `twosided`.
 //!
 //! Files use only files before them in this order: `microfacet`, `fresnel`, `table` and `albedo`; `means`; `base` and
-//! `lobe` (one file per lobe); `model` and `lobe_set` (data); `bsdf`, `sample`, `bound`, `packet`, `alike16`,
+//! `lobe` (one file per lobe); `model` and `lobe_set` (data); `seen`, `bsdf`, `sample`, `bound`, `packet`,
 //! `prepared`, `mean` and `straight` (evaluation); `colours`, `layers` and `build` (from the scene's materials);
 //! `materials` (lookup).
 //!
@@ -15,7 +15,6 @@
 //! length: `wo` towards the eye or the previous vertex of the path, `wi` towards the light.
 
 mod albedo;
-mod alike16;
 mod base;
 mod bound;
 mod bsdf;
@@ -36,12 +35,13 @@ mod prepared;
 mod principled;
 mod roughness;
 mod sample;
+mod seen;
 mod straight;
 mod table;
 mod tables;
 
-pub use alike16::AlikeBsdfs16;
-pub use lobe::{BsdfSample, DirectionBound, DirectionBounds16, DullLobe, LobeShape};
+pub use bound::AlikeBsdfs16;
+pub use lobe::{BsdfSample, DirectionBound, DullLobe, LobeShape};
 pub use lobe_set::LobeSet;
 pub use materials::Materials;
 pub use mean::MeanBsdf;

@@ -1,19 +1,25 @@
-//! Materials at sixteen points at once. Lambertian materials are evaluated in all lanes together, others one by one.
+//! Materials at sixteen points at once: lanes of one model are evaluated together.
 
-use super::lobe::BsdfSample;
-use super::model::Bsdf;
-use base::math::{F32x16, LANES, Rgb, U32x16, Vec2x16, Vec3x16, lanes_in, mask_of};
-use base::sampling::cosine_hemisphere;
+use super::lobe::{BsdfSample, MAX_LOBES};
+use super::model::{Bsdf, Model};
+use super::seen::{Sampled, Seen};
+use base::math::{F32x16, LANES, Lane, Mask16, Rgb, U32x16, V3, Vec2x16, Vec3x16, f32x16, lanes_in, mask_of};
+use base::sampling::cosine_direction;
 use glam::Vec3;
 use std::f32::consts::{FRAC_1_PI, PI};
+
+/// Minimum number of lanes of one model that are evaluated together. Fewer are faster one by one.
+const MIN_ALIKE: u32 = 3;
 
 /// Sixteen materials, each at one point and seen from one direction.
 #[derive(Clone, Debug)]
 pub struct Bsdfs16<'m> {
-    lanes: [Bsdf<'m>; LANES],
+    models: [&'m Model; LANES],
     wo: Vec3x16,
-    /// BRDF of each Lambertian lane.
+    /// BRDFs of the bases, without the transmittances of coats.
     base: Vec3x16,
+    /// Factors on the lobes.
+    scales: [Vec3x16; MAX_LOBES],
     /// -1 if a two-sided surface is seen from behind, else 1.
     side: F32x16,
     /// Lanes whose materials are more than Lambertian.
@@ -42,21 +48,34 @@ pub struct BsdfSamples16 {
 impl<'m> Bsdfs16<'m> {
     /// Collects the materials that `at` returns for each lane, seen from `wo`.
     #[inline]
-    pub fn new(wo: Vec3x16, at: impl FnMut(usize) -> Bsdf<'m>) -> Bsdfs16<'m> {
-        let lanes: [Bsdf; LANES] = std::array::from_fn(at);
-        let mut base = Vec3x16::default();
-        let (mut layered, mut smooth, mut two_sided) = (0, 0, [0.0; LANES]);
-        for (i, bsdf) in lanes.iter().enumerate() {
-            base.set(i, bsdf.base);
-            layered |= u16::from(!bsdf.is_lambert()) << i;
-            smooth |= u16::from(bsdf.has_smooth()) << i;
-            two_sided[i] = if bsdf.two_sided() { -1.0 } else { 1.0 };
+    pub fn new(wo: Vec3x16, mut at: impl FnMut(usize) -> Bsdf<'m>) -> Bsdfs16<'m> {
+        let first = at(0);
+        let mut all = Bsdfs16 {
+            models: [first.model; LANES],
+            wo,
+            base: Vec3x16::ZERO,
+            scales: [Vec3x16::ZERO; MAX_LOBES],
+            side: [1.0; LANES],
+            layered: 0,
+            smooth: 0,
+        };
+        all.set(0, &first);
+        for lane in 1..LANES {
+            all.set(lane, &at(lane));
         }
-        let mut side = [1.0; LANES];
-        for i in 0..LANES {
-            side[i] = if wo.z[i] < 0.0 { two_sided[i] } else { 1.0 };
+        all
+    }
+
+    #[inline(always)]
+    fn set(&mut self, lane: usize, bsdf: &Bsdf<'m>) {
+        self.models[lane] = bsdf.model;
+        self.base.set(lane, bsdf.base);
+        for slot in 0..bsdf.model.lobes.len() {
+            self.scales[slot].set(lane, bsdf.scales[slot]);
         }
-        Bsdfs16 { lanes, wo, base, side, layered, smooth }
+        self.side[lane] = bsdf.side(self.wo.get(lane));
+        self.layered |= u16::from(!bsdf.is_lambert()) << lane;
+        self.smooth |= u16::from(bsdf.has_smooth()) << lane;
     }
 
     /// Returns the lanes that are Lambertian and nothing else.
@@ -76,11 +95,10 @@ impl<'m> Bsdfs16<'m> {
     #[inline]
     pub fn keep_glossy(&mut self, lanes: u16) -> u16 {
         let mut glossy = 0;
-        for i in lanes_in(lanes & self.layered) {
-            if let Some(part) = self.lanes[i].glossy_part() {
-                self.lanes[i] = part;
-                self.base.set(i, Rgb::ZERO);
-                glossy |= 1 << i;
+        for lane in lanes_in(lanes & self.layered) {
+            if let Some(part) = self.lane(lane).glossy_part() {
+                self.set(lane, &part);
+                glossy |= 1 << lane;
             }
         }
         glossy
@@ -88,8 +106,12 @@ impl<'m> Bsdfs16<'m> {
 
     /// Returns the material of a lane.
     #[inline]
-    pub fn lane(&self, lane: usize) -> &Bsdf<'m> {
-        &self.lanes[lane]
+    pub fn lane(&self, lane: usize) -> Bsdf<'m> {
+        let mut scales = [Rgb::ZERO; MAX_LOBES];
+        for slot in 0..self.models[lane].lobes.len() {
+            scales[slot] = self.scales[slot].get(lane);
+        }
+        Bsdf { model: self.models[lane], base: self.base.get(lane), scales }
     }
 
     /// Returns the direction from which a lane is seen.
@@ -101,55 +123,145 @@ impl<'m> Bsdfs16<'m> {
     /// Returns [`Bsdf::eval_pdf`] in the lanes of `wanted`; other lanes are undefined.
     #[inline]
     pub fn eval_pdf(&self, wi: &Vec3x16, wanted: u16) -> (Vec3x16, F32x16) {
-        let (mut value, mut pdf) = (Vec3x16::default(), [0.0; LANES]);
-        for i in 0..LANES {
-            let (cos_o, cos_i) = (self.wo.z[i] * self.side[i], wi.z[i] * self.side[i]);
-            let lit = (cos_o > 0.0) & (cos_i > 0.0);
-            value.set(i, if lit { self.base.get(i) } else { Rgb::ZERO });
-            pdf[i] = if lit { cos_i * FRAC_1_PI } else { 0.0 };
+        let turned = self.turned(wi);
+        let is_lit = self.turned(&self.wo).z.is_positive() & turned.z.is_positive();
+        let mut value = self.base.load().keep(is_lit);
+        let mut pdf = (turned.z * FRAC_1_PI).keep(is_lit);
+        let mut left = self.layered & wanted;
+        while left != 0 {
+            let lanes = self.take_alike(&mut left);
+            let (v, p) = if lanes.count_ones() < MIN_ALIKE {
+                self.eval_one_by_one(wi, lanes)
+            } else {
+                let seen = self.seen(lanes);
+                seen.eval_pdf(&seen.facet(turned))
+            };
+            let lanes = Mask16::of(lanes);
+            value = V3::select(lanes, v, value);
+            pdf = f32x16::pick(lanes, p, pdf);
         }
-        for i in lanes_in(self.layered & wanted) {
-            let (v, p) = self.lanes[i].eval_pdf(self.wo.get(i), wi.get(i));
-            value.set(i, v);
-            pdf[i] = p;
-        }
-        (value, pdf)
+        (value.into(), pdf.to_array())
     }
 
     /// Returns [`Bsdf::sample`] in the lanes of `wanted`; other lanes are undefined.
     #[inline]
     pub fn sample(&self, u_lobe: &F32x16, u: &Vec2x16, wanted: u16) -> BsdfSamples16 {
-        let mut s = BsdfSamples16::NONE;
-        for i in 0..LANES {
-            let mut wi = cosine_hemisphere(u.get(i));
-            s.pdf[i] = wi.z * FRAC_1_PI;
-            wi.z *= self.side[i];
-            s.wi.set(i, wi);
-            s.weight.set(i, self.base.get(i) * PI);
-            s.eta[i] = 1.0;
-            s.goes_on[i] = u32::from(self.wo.z[i] * self.side[i] > 0.0);
+        let (side, numbers) = (f32x16::new(self.side), [f32x16::new(u.x), f32x16::new(u.y)]);
+        let wi = cosine_direction(numbers);
+        let none = Mask16::of(0);
+        let lambertian = Sampled {
+            wi,
+            weight: self.base.load().times(f32x16::from(PI)),
+            pdf: wi.z * FRAC_1_PI,
+            eta: f32x16::from(1.0),
+            found: self.turned(&self.wo).z.is_positive(),
+            delta: none,
+            straight: none,
+        };
+        let mut samples = BsdfSamples16::new(&lambertian, side);
+        let mut left = self.layered & wanted;
+        while left != 0 {
+            let lanes = self.take_alike(&mut left);
+            if lanes.count_ones() < MIN_ALIKE {
+                for lane in lanes_in(lanes) {
+                    let sample = self.lane(lane).sample(self.wo.get(lane), u_lobe[lane], u.get(lane));
+                    samples.set(lane, sample);
+                }
+            } else {
+                let wanted = Mask16::of(lanes);
+                let sampled = self.seen(lanes).sample(f32x16::new(*u_lobe), numbers, wanted);
+                samples.put(wanted, &BsdfSamples16::new(&sampled, side));
+            }
         }
-        for i in lanes_in(self.layered & wanted) {
-            s.set(i, self.lanes[i].sample(self.wo.get(i), u_lobe[i], u.get(i)));
+        samples
+    }
+
+    /// Evaluates some lanes one by one.
+    fn eval_one_by_one(&self, wi: &Vec3x16, lanes: u16) -> (V3<f32x16>, f32x16) {
+        let (mut values, mut pdfs) = (Vec3x16::ZERO, [0.0; LANES]);
+        for lane in lanes_in(lanes) {
+            let (value, pdf) = self.lane(lane).eval_pdf(self.wo.get(lane), wi.get(lane));
+            values.set(lane, value);
+            pdfs[lane] = pdf;
         }
-        s
+        (values.load(), f32x16::new(pdfs))
+    }
+
+    /// Turns directions to the side of the normal.
+    #[inline(always)]
+    fn turned(&self, v: &Vec3x16) -> V3<f32x16> {
+        let v = v.load();
+        V3::new(v.x, v.y, v.z * f32x16::new(self.side))
+    }
+
+    /// Takes the lanes of the first model from those `left`.
+    #[inline(always)]
+    fn take_alike(&self, left: &mut u16) -> u16 {
+        let model = self.models[left.trailing_zeros() as usize];
+        let mut lanes = 0;
+        for (lane, other) in self.models.iter().enumerate() {
+            let is_alike =
+                std::ptr::eq(*other, model) || other.lobe_list == model.lobe_list && other.coat == model.coat;
+            lanes |= u16::from(is_alike) << lane;
+        }
+        lanes &= *left;
+        *left &= !lanes;
+        lanes
+    }
+
+    /// Prepares lanes that differ in colour only.
+    #[inline(always)]
+    fn seen(&self, lanes: u16) -> Seen<'m, f32x16> {
+        let model = self.models[lanes.trailing_zeros() as usize];
+        let mut scales = [V3::zero(); MAX_LOBES];
+        for slot in 0..model.lobes.len() {
+            scales[slot] = self.scales[slot].load();
+        }
+        Seen::new(model, self.base.load(), &scales, self.turned(&self.wo))
     }
 }
 
 impl BsdfSamples16 {
-    /// Samples of paths that all end.
-    pub(super) const NONE: BsdfSamples16 = BsdfSamples16 {
-        wi: Vec3x16::ZERO,
-        weight: Vec3x16::ZERO,
-        pdf: [0.0; LANES],
-        eta: [0.0; LANES],
-        goes_on: [0; LANES],
-        straight: [0; LANES],
-    };
+    /// Stores samples whose directions are turned to the side of the normal.
+    #[inline(always)]
+    pub(super) fn new(sampled: &Sampled<f32x16>, side: f32x16) -> BsdfSamples16 {
+        let V3 { x, y, z } = sampled.wi;
+        let flags = |mask: Mask16| {
+            let (mut row, bits) = ([0; LANES], mask.bits());
+            for (lane, flag) in row.iter_mut().enumerate() {
+                *flag = u32::from(bits) >> lane & 1;
+            }
+            row
+        };
+        BsdfSamples16 {
+            wi: V3::new(x, y, z * side).into(),
+            weight: sampled.weight.into(),
+            pdf: f32x16::pick(sampled.delta, f32x16::from(f32::INFINITY), sampled.pdf).to_array(),
+            eta: sampled.eta.to_array(),
+            goes_on: flags(sampled.found),
+            straight: flags(sampled.straight),
+        }
+    }
+
+    /// Sets the lanes of a mask to other samples.
+    #[inline(always)]
+    fn put(&mut self, mask: Mask16, other: &BsdfSamples16) {
+        self.wi.put(mask, other.wi.load());
+        self.weight.put(mask, other.weight.load());
+        let put = |row: &mut F32x16, values: &F32x16| {
+            *row = f32x16::pick(mask, f32x16::new(*values), f32x16::new(*row)).to_array();
+        };
+        put(&mut self.pdf, &other.pdf);
+        put(&mut self.eta, &other.eta);
+        for lane in lanes_in(mask.bits()) {
+            self.goes_on[lane] = other.goes_on[lane];
+            self.straight[lane] = other.straight[lane];
+        }
+    }
 
     /// Sets a lane to a sample, or ends the path of the lane.
     #[inline]
-    pub(super) fn set(&mut self, lane: usize, sample: Option<BsdfSample>) {
+    fn set(&mut self, lane: usize, sample: Option<BsdfSample>) {
         self.goes_on[lane] = u32::from(sample.is_some());
         if let Some(sample) = sample {
             self.wi.set(lane, sample.wi);

@@ -1,13 +1,11 @@
 //! Sampling of directions. Base or lobe is chosen by its estimated albedo; the base is sampled by the cosine, a lobe by
 //! its own rule.
 
-use super::bsdf::Outgoing;
-use super::lobe::{BsdfSample, MAX_LOBES};
+use super::lobe::BsdfSample;
 use super::model::Bsdf;
-use base::math::Rgb;
-use base::sampling::cosine_hemisphere;
+use super::seen::Sampled;
+use base::math::{Rgb, V3};
 use glam::{Vec2, Vec3};
-use std::f32::consts::{FRAC_1_PI, PI};
 
 /// All delta lobes of a material, for following specular chains without randomness. Each weight is the lobe's
 /// reflectance or transmittance, and each pdf is 1.
@@ -30,52 +28,13 @@ impl Bsdf<'_> {
         if !(wo.z > 0.0) && !self.model.kinds.pass_light {
             return None;
         }
-        let mut sample = if self.is_lambert() {
-            let wi = cosine_hemisphere(u);
-            let weight = self.base * PI;
-            BsdfSample { wi, weight, pdf: wi.z * FRAC_1_PI, delta: false, eta: 1.0, straight: false }
-        } else {
-            self.sample_layered(&self.outgoing(wo), u_lobe, u)?
+        let seen = self.seen(wo);
+        let sampled = match self.is_lambert() {
+            true => seen.sample_lambert(u.to_array(), true),
+            false => seen.sample(u_lobe, u.to_array(), true),
         };
-        sample.wi.z *= side;
-        Some(sample)
-    }
-
-    /// Samples a material that is more than Lambertian.
-    pub(super) fn sample_layered(&self, outgoing: &Outgoing, u_lobe: f32, u: Vec2) -> Option<BsdfSample> {
-        let wo = outgoing.wo;
-        let smooth = |wi: Vec3, eta: f32, (value, pdf): (Rgb, f32)| {
-            let weight = value * (wi.z.abs() / pdf);
-            let sample = BsdfSample { wi, weight, pdf, delta: false, eta, straight: false };
-            (pdf > 0.0).then_some(sample)
-        };
-        if u_lobe < outgoing.base_probability {
-            let wi = cosine_hemisphere(u);
-            return smooth(wi, 1.0, self.eval_pdf_layered(outgoing, wi));
-        }
-        let slot = self.pick(outgoing, u_lobe)?;
-        let (lobe, pdf) = (&self.model.lobes[slot], outgoing.probabilities[slot]);
-        if !lobe.is_delta() {
-            let directions = lobe.sample(wo, u)?;
-            let eta = lobe.refraction(wo);
-            return smooth(directions.wi, eta, self.eval_pdf_between(outgoing, &directions));
-        }
-        let sample = lobe.delta(self.scales[slot], wo)?;
-        (pdf > 0.0).then_some(BsdfSample { weight: sample.weight / pdf, pdf, ..sample })
-    }
-
-    /// Returns the slot of the lobe that `u_lobe`, beyond the base's probability, chooses.
-    #[inline]
-    fn pick(&self, outgoing: &Outgoing, u_lobe: f32) -> Option<usize> {
-        let last = self.model.lobes.len().checked_sub(1)?;
-        let mut below = outgoing.base_probability;
-        for slot in 0..last.min(MAX_LOBES - 1) {
-            below += outgoing.probabilities[slot];
-            if u_lobe < below {
-                return Some(slot);
-            }
-        }
-        Some(last)
+        let sample = sampled.found.then(|| sampled.single());
+        sample.map(|s| BsdfSample { wi: s.wi * Vec3::new(1.0, 1.0, side), ..s })
     }
 
     /// Returns the share of the light that passes straight through the surface at the cosine `cos` to the shading
@@ -84,7 +43,8 @@ impl Bsdf<'_> {
     pub fn straight_transmittance(&self, cos: f32) -> Rgb {
         let wo = Vec3::new(0.0, 0.0, cos);
         let passing = self.model.lobes.iter().zip(self.scales).filter(|(lobe, _)| lobe.passes_straight());
-        passing.filter_map(|(lobe, scale)| lobe.delta(scale, wo)).map(|sample| sample.weight).sum()
+        let delta = passing.map(|(lobe, scale)| lobe.delta::<f32>(V3::splat(scale), V3::splat(wo)));
+        delta.filter(|delta| delta.found).map(|delta| Rgb::from(delta.weight)).sum()
     }
 
     /// Returns every delta lobe as seen from `wo`.
@@ -93,15 +53,35 @@ impl Bsdf<'_> {
         let wo = Vec3::new(wo.x, wo.y, wo.z * side);
         let mut all = DeltaLobes::default();
         for (slot, lobe) in self.model.lobes.iter().enumerate() {
-            let Some(mut sample) = lobe.delta(self.scales[slot], wo) else { continue };
-            let lobe =
-                if (sample.wi.z > 0.0) == (wo.z > 0.0) { &mut all.reflection } else { &mut all.refraction };
-            sample.wi.z *= side;
+            let delta = lobe.delta::<f32>(V3::splat(self.scales[slot]), V3::splat(wo));
+            if !delta.found {
+                continue;
+            }
+            let (wi, weight) = (Vec3::from(delta.wi), Rgb::from(delta.weight));
+            let lobe = if (wi.z > 0.0) == (wo.z > 0.0) { &mut all.reflection } else { &mut all.refraction };
+            let (wi, straight) = (Vec3::new(wi.x, wi.y, wi.z * side), delta.straight);
             match lobe {
-                Some(other) => other.weight += sample.weight,
-                None => *lobe = Some(sample),
+                Some(other) => other.weight += weight,
+                None => {
+                    *lobe = Some(BsdfSample { wi, weight, pdf: 1.0, delta: true, eta: delta.eta, straight });
+                }
             }
         }
         all
+    }
+}
+
+impl Sampled<f32> {
+    /// Returns the sample.
+    #[inline(always)]
+    fn single(&self) -> BsdfSample {
+        BsdfSample {
+            wi: self.wi.into(),
+            weight: self.weight.into(),
+            pdf: self.pdf,
+            delta: self.delta,
+            eta: self.eta,
+            straight: self.straight,
+        }
     }
 }

@@ -1,8 +1,7 @@
 //! Light that goes on straight through a surface: through gaps and thin sheets.
 
 use super::lobe::{Interface, LobeModel, MAX_LOBES};
-use base::math::Rgb;
-use glam::Vec3;
+use base::math::{Rgb, V3};
 use scene::MaterialId;
 
 /// Lobes of a material that light passes straight, if nothing of the material is textured.
@@ -38,8 +37,9 @@ impl Straight {
     fn transmittance(&self, cos: f32) -> Rgb {
         let mut transmittance = Rgb::ZERO;
         for (sheet, scale) in &self.sheets {
-            if let Some(sample) = sheet.delta(*scale, Vec3::new(0.0, 0.0, cos)) {
-                transmittance += sample.weight;
+            let through = sheet.delta::<f32>(V3::splat(*scale), V3::new(0.0, 0.0, cos));
+            if through.found {
+                transmittance += Rgb::from(through.weight);
             }
         }
         transmittance + self.gaps

@@ -1,6 +1,6 @@
 //! Functions of the angle to the normal, tabulated.
 
-use base::math::gauss_legendre;
+use base::math::{Lane, Rgb, V3, gauss_legendre};
 use glam::Vec3;
 use rayon::prelude::*;
 use std::array;
@@ -45,6 +45,14 @@ impl<T: Copy + Send + Add<Output = T> + Sub<Output = T> + Mul<f32, Output = T>> 
             a * (step * step * (i_f + 1.0 / 3.0)) + b * (step * step * (i_f + 2.0 / 3.0))
         };
         (1..ANGLES - 1).fold(cell(0), |sum, i| sum + cell(i))
+    }
+}
+
+impl AngleTable<Rgb> {
+    /// Returns [`AngleTable::lookup`] in every lane.
+    #[inline(always)]
+    pub fn colours<L: Lane>(&self, cos: L) -> V3<L> {
+        V3::from_fn(|lane| self.lookup(cos.lane(lane)))
     }
 }
 

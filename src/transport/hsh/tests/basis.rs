@@ -1,7 +1,7 @@
 //! The basis against its defining properties: orthonormality, the formula in angles, finite differences.
 
 use crate::hsh::basis::*;
-use base::math::{F32x8, Real, gauss_legendre};
+use base::math::{Real, f32x8, gauss_legendre};
 use std::array::from_fn;
 use std::f64::consts::TAU;
 
@@ -153,12 +153,12 @@ fn single_precision_errs_by_little_and_side_by_side_it_is_the_same() {
         let single = omega.map(|c| c as f32);
         let rounded = single.map(f64::from);
         let (exact, values) = (with_derivatives(rounded), with_derivatives(single));
-        let lanes = with_derivatives(single.map(|c| F32x8(from_fn(|i| if i == 3 { c } else { 0.5 }))));
+        let lanes = with_derivatives(single.map(|c| f32x8::new(from_fn(|i| if i == 3 { c } else { 0.5 }))));
         for k in 0..MAX_FUNCTIONS {
             for part in 0..3 {
                 let e = (f64::from(values[k][part]) - exact[k][part]).abs();
                 error[usize::from(part > 0)] = e.max(error[usize::from(part > 0)]);
-                assert_eq!(lanes[k][part].0[3], values[k][part]);
+                assert_eq!(lanes[k][part].as_array()[3], values[k][part]);
             }
         }
     }

@@ -97,8 +97,6 @@ impl<'m> ReceiverPacket<'m> {
 pub(in crate::lightcut) struct Frames16 {
     /// Tangents, bitangents and normals.
     pub axes: [Vec3x16; 3],
-    /// Absolute values of the axes.
-    pub abs: [Vec3x16; 3],
 }
 
 impl Frames16 {
@@ -111,7 +109,6 @@ impl Frames16 {
     fn set(&mut self, lane: usize, frame: &Frame) {
         for (i, axis) in [frame.tangent, frame.bitangent, frame.normal].into_iter().enumerate() {
             self.axes[i].set(lane, axis);
-            self.abs[i].set(lane, axis.abs());
         }
     }
 }

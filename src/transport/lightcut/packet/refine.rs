@@ -6,7 +6,7 @@ use crate::lightcut::clamp::{DOMINANT, DOMINANT_TO_REST, is_weak};
 use crate::lightcut::refinement::heir_and_other;
 use crate::lightcut::{CutSettings, PacketVisibility, Transfer};
 use crate::lights::LightTrees;
-use base::math::{F32x16, LANES, Vec3x16};
+use base::math::{F32x16, LANES, Lane, Vec3x16, f32x16};
 
 /// Minimum luminance of a lane where errors are judged, relative to the brightest lane's.
 const MIN_LUMINANCE: f32 = 1.0 / 256.0;
@@ -130,19 +130,17 @@ impl<'a, 't, 'm, V: PacketVisibility> PacketRefinement<'a, 't, 'm, V> {
         thresholds.map(|threshold| if threshold > min { threshold } else { min })
     }
 
+    #[inline(always)]
     fn count(&mut self, judgement: &Judgement) {
-        for (total, counted) in self.totals.iter_mut().zip(&judgement.counted) {
-            *total += counted;
-        }
+        self.totals = (f32x16::new(self.totals) + f32x16::new(judgement.counted)).to_array();
     }
 
     fn retotal(&mut self) {
-        self.totals = self.receivers.baseline;
+        let mut totals = f32x16::new(self.receivers.baseline);
         for judgement in &self.cut.judgements {
-            for (total, counted) in self.totals.iter_mut().zip(&judgement.counted) {
-                *total += counted;
-            }
+            totals += f32x16::new(judgement.counted);
         }
+        self.totals = totals.to_array();
     }
 
     /// Returns the wanted error of each cluster, by lane.
@@ -160,14 +158,11 @@ impl<'a, 't, 'm, V: PacketVisibility> PacketRefinement<'a, 't, 'm, V> {
         };
         let inherited = parent.responses;
         let Judgement { errors, counted, sight } = &self.cut.judgements[place];
-        let (sight, mut fine) = (*sight, 0);
-        for l in 0..LANES {
-            let rest = self.totals[l] - counted[l];
-            self.totals[l] = if rest > 0.0 { rest } else { 0.0 };
-            fine |= u16::from(errors[l] <= self.fine[l]) << l;
-        }
+        let sight = *sight;
+        let fine = !f32x16::new(*errors).gt(f32x16::new(self.fine));
+        self.totals = (f32x16::new(self.totals) - f32x16::new(*counted)).positive().to_array();
         let rest = self.totals;
-        let known = Sight { known: sight.known & fine, seen: sight.seen };
+        let known = Sight { known: sight.known & fine.bits(), seen: sight.seen };
         let (responses, other_sight, unshadowed) = self.representative_responses(other, known);
         let judgement = self.judge(heir, &inherited, sight, &rest);
         self.count(&judgement);
@@ -194,14 +189,10 @@ impl<'a, 't, 'm, V: PacketVisibility> PacketRefinement<'a, 't, 'm, V> {
             ZERO
         } else {
             self.cut.counts.bounds += self.receivers.len() as u64;
-            let mut errors = self.transfer.errors16(self.receivers, n);
+            let errors = self.transfer.errors16(self.receivers, n);
             // As in a single point's cut, a cluster that gives more than a quarter of the total is split.
             let share = self.settings.epsilon / DOMINANT;
-            for l in 0..LANES {
-                let doubt = share * counted[l];
-                errors[l] = if doubt > errors[l] { doubt } else { errors[l] };
-            }
-            errors
+            (f32x16::new(counted) * share).max(f32x16::new(errors)).to_array()
         };
         Judgement { errors, counted, sight }
     }
@@ -228,13 +219,8 @@ impl<'a, 't, 'm, V: PacketVisibility> PacketRefinement<'a, 't, 'm, V> {
     /// True if the cubic mean over the lanes of a cluster's errors, relative to the thresholds, is above 1.
     #[inline]
     fn offends(&self, place: usize, inverse_thresholds: &F32x16) -> bool {
-        let errors = &self.cut.judgements[place].errors;
-        let mut cubes = [0.0; LANES];
-        for l in 0..LANES {
-            let relative = errors[l] * inverse_thresholds[l];
-            cubes[l] = relative * relative * relative;
-        }
-        halved(cubes, |a, b| a + b) > self.receivers.len() as f32
+        let relative = f32x16::new(self.cut.judgements[place].errors) * f32x16::new(*inverse_thresholds);
+        (relative.sq() * relative).reduce_add() > self.receivers.len() as f32
     }
 }
 

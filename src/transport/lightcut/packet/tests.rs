@@ -56,7 +56,7 @@ fn lanes_have_the_responses_of_single_points_and_bounds_above_them() {
         for count in [16, 1, 5] {
             points.set(neighbours(&materials, &scene, scale, count, &mut numbers));
             for (id, node) in trees.nodes.iter().enumerate().filter(|(_, n)| n.intensity != Rgb::ZERO) {
-                let (bounds, _) = transfer.bounds16(&points, node);
+                let bounds = transfer.bounds16(&points, node).0.to_array();
                 assert!(bounds[count..].iter().all(|b| *b == 0.0), "a lane without a point");
                 let mut found = Vec::new();
                 members(&trees, id as u32, &mut found);

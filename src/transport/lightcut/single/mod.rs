@@ -12,7 +12,6 @@ mod cut;
 #[cfg(test)]
 mod exhaustive;
 mod gather;
-mod geometry;
 mod offenders;
 mod refine;
 #[cfg(test)]
@@ -21,4 +20,3 @@ mod tests;
 pub use cut::{Cut, CutCluster, Lightcut};
 #[cfg(test)]
 pub use exhaustive::gather_all;
-pub use geometry::{OffsetBox, max_cos_to_cone, max_cos_to_cone_signed};

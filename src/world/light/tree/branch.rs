@@ -1,7 +1,7 @@
 //! Branches of the emitter tree: up to eight siblings that are weighted at once.
 
 use super::node::{ARITY, BY_POWER, EmitterNode, PointAndNormal, TreeChild};
-use base::math::F32x8;
+use base::math::f32x8;
 use glam::Vec3;
 
 /// Siblings, as a structure of arrays.
@@ -68,7 +68,7 @@ impl Branch {
         for (weight, factor) in weights.iter_mut().zip(factors.into_iter().flatten()) {
             *weight *= factor;
         }
-        let sum = F32x8(weights).sum();
+        let sum = f32x8::new(weights).reduce_add();
         let scale = if sum > 0.0 { (1.0 - BY_POWER) / sum } else { 0.0 };
         for i in 0..ARITY {
             let weight = weights[i] * scale + BY_POWER * self.share[i];
@@ -110,7 +110,7 @@ impl Branch {
     #[inline]
     pub fn probability(&self, at: PointAndNormal, factors: Option<&[f32]>, slot: usize) -> f32 {
         let weights = self.weights(at, factors);
-        let total = F32x8(weights).sum();
+        let total = f32x8::new(weights).reduce_add();
         if total > 0.0 { weights[slot] / total } else { 0.0 }
     }
 }

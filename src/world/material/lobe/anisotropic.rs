@@ -8,14 +8,11 @@
 //! direction on the surface. The bounds use the larger roughness for the density and the smaller one for masking. The
 //! albedo is the mean over azimuths.
 
-use super::{
-    DirectionBound, Directions, Directions16, FacetBound, FacetBounds16, LobeLanes, SeenLobe, ValuePdf16,
-    mean,
-};
+use super::{DirectionBound, Facet, FacetBound, SeenLobe, means};
 use crate::material::fresnel::Curve;
 use crate::material::microfacet::Microfacets;
 use crate::material::table::{AngleTable, rule};
-use base::math::{LANES, Rgb, Vec3x16, select};
+use base::math::{Lane, Rgb, V3};
 use glam::{Vec2, Vec3};
 use scene::{Distribution, Fresnel};
 use std::f32::consts::FRAC_PI_2;
@@ -88,144 +85,87 @@ impl AnisotropicLobe {
             let wo = Vec3::new(wo.x * azimuth.cos(), wo.x * azimuth.sin(), wo.z);
             for (&(u, weight_u), &(v, weight_v)) in rule.iter().flat_map(|u| rule.iter().map(move |v| (u, v)))
             {
-                let Some(d) = self.sample(wo, Vec2::new(u, v)) else { continue };
-                let reflectance = self.fresnel.reflectance(wo.dot(d.half).min(1.0));
-                sum += reflectance * (2.0 * d.wi.z * self.v1(d.wi) * weight_u * weight_v);
+                let facet = self.sample(V3::splat(wo), [u, v]);
+                if facet.reflects {
+                    let reflectance = self.fresnel.reflectance(facet.cos_d);
+                    sum += reflectance * (2.0 * facet.wi.z * self.v1(facet.wi) * weight_u * weight_v);
+                }
             }
         }
         sum / AZIMUTHS as f32
     }
 
     /// Returns a direction after the stretch, not of unit length.
-    #[inline]
-    fn stretched(&self, v: Vec3) -> Vec3 {
-        Vec3::new(v.x * self.alpha.x, v.y * self.alpha.y, v.z)
+    #[inline(always)]
+    fn stretched<L: Lane>(&self, v: V3<L>) -> V3<L> {
+        V3::new(v.x * self.alpha.x, v.y * self.alpha.y, v.z)
     }
 
     /// Returns the area of facets with unit normal `h` per area and solid angle.
-    #[inline]
-    fn density(&self, h: Vec3) -> f32 {
-        let slopes = Vec2::new(h.x, h.y) / self.alpha;
-        self.unit.density_from(slopes.length_squared(), h.z * h.z) / (self.alpha.x * self.alpha.y)
+    #[inline(always)]
+    fn density<L: Lane>(&self, h: V3<L>) -> L {
+        let slopes_sq = (h.x * (1.0 / self.alpha.x)).sq() + (h.y * (1.0 / self.alpha.y)).sq();
+        self.unit.density(slopes_sq, h.z.sq()) * (1.0 / (self.alpha.x * self.alpha.y))
     }
 
     /// Returns V1 = G1 / (2 cos θ) for the unit direction `v` above the surface.
-    #[inline]
-    fn v1(&self, v: Vec3) -> f32 {
+    #[inline(always)]
+    fn v1<L: Lane>(&self, v: V3<L>) -> L {
         let stretched = self.stretched(v);
-        let length = stretched.length();
-        self.unit.v1((stretched.z / length).min(1.0)) / length
+        let inv_length = stretched.length_sq().rsqrt();
+        self.unit.v1(stretched.z * inv_length) * inv_length
     }
 
-    /// Returns the V1 of the density of visible normals (see [`Microfacets::v1_exact`]).
-    #[inline]
-    fn v1_exact(&self, v: Vec3) -> f32 {
-        let stretched = self.stretched(v);
-        let length = stretched.length();
-        self.unit.v1_exact((stretched.z / length).min(1.0)) / length
+    /// See [`super::LobeModel::seen`].
+    #[inline(always)]
+    pub(super) fn seen<L: Lane>(&self, wo: V3<L>) -> SeenLobe<L> {
+        let stretched = self.stretched(wo);
+        let inv_length = stretched.length_sq().rsqrt();
+        let exact = self.unit.v1_exact(stretched.z * inv_length) * inv_length;
+        SeenLobe { masking: self.v1(wo), density: exact * 0.5 }
     }
 
-    /// See [`super::LobeModel::eval_pdf`].
-    #[inline]
-    pub fn eval_pdf(&self, scale: Rgb, probability: f32, d: &Directions) -> (Rgb, f32) {
-        if !(d.wo.z > 0.0 && d.wi.z > 0.0) {
-            return (Rgb::ZERO, 0.0);
-        }
-        let density = self.density(d.half);
-        let masked = density * self.v1(d.wo) * self.v1(d.wi);
-        let value = scale * self.fresnel.reflectance(d.wo.dot(d.half).min(1.0)) * masked;
-        (value, probability * 0.5 * density * self.v1_exact(d.wo))
+    /// See [`super::LobeModel::value_pdf`].
+    #[inline(always)]
+    pub(super) fn value_pdf<L: Lane>(&self, seen: &SeenLobe<L>, facet: &Facet<L>) -> (V3<L>, L) {
+        let density = self.density(facet.half);
+        let masked = density * seen.masking * self.v1(facet.wi);
+        (self.fresnel.reflected(facet.cos_d).times(masked), density * seen.density)
     }
 
     /// See [`super::LobeModel::sample`].
-    #[inline]
-    pub fn sample(&self, wo: Vec3, u: Vec2) -> Option<Directions> {
-        let slope = self.unit.sample_visible(self.stretched(wo).normalize(), u);
-        let half = self.stretched(slope).try_normalize()?;
-        let wi = (2.0 * wo.dot(half)) * half - wo;
-        (wo.z > 0.0 && wi.z > 0.0).then_some(Directions { wo, wi, half })
+    #[inline(always)]
+    pub(super) fn sample<L: Lane>(&self, wo: V3<L>, u: [L; 2]) -> Facet<L> {
+        let stretched = self.stretched(wo);
+        let slope = self.unit.sample_visible(stretched.times(stretched.length_sq().rsqrt()), u);
+        let half = self.stretched(slope);
+        Facet::reflected(wo, half.times(half.length_sq().max(L::from(f32::MIN_POSITIVE)).rsqrt()))
     }
 
     /// Returns the albedo for light at the cosine `cos`, averaged over azimuths.
     #[inline]
-    pub fn albedo(&self, scale: Rgb, cos: f32) -> Rgb {
+    pub(super) fn albedo(&self, scale: Rgb, cos: f32) -> Rgb {
         scale * self.albedo.lookup(cos)
     }
 
     /// See [`super::LobeModel::sampling_weight`].
-    #[inline]
-    pub fn sampling_weight(&self, scale: Rgb, cos: f32) -> f32 {
-        if cos > 0.0 { mean(self.albedo(scale, cos)) } else { 0.0 }
+    #[inline(always)]
+    pub(super) fn sampling_weight<L: Lane>(&self, scale: V3<L>, cos: L) -> L {
+        means(scale * self.albedo.colours(cos))
     }
 
-    /// Returns a bound of value times cosine, without the factor.
-    #[inline]
-    fn most(&self, masking: f32, sin_sq: f32, cos_max: f32, cos_d: f32) -> Rgb {
-        let [narrow, wide] = &self.ends;
-        let density = wide.max_density(sin_sq) * (wide.alpha / narrow.alpha);
-        let masked = density * OVERSHOOT * OVERSHOOT * masking * 0.5 * narrow.max_g1(cos_max);
-        self.fresnel.max_reflectance(cos_d, self.fresnel.reflectance(1.0)) * (masked * DirectionBound::WIDER)
+    /// See [`super::LobeModel::max_masking`].
+    #[inline(always)]
+    pub(super) fn max_masking<L: Lane>(&self, cos_o: L) -> L {
+        self.ends[0].v1(cos_o)
     }
 
     /// See [`super::LobeModel::bound`].
-    #[inline]
-    pub fn bound(&self, scale: Rgb, bound: &FacetBound) -> Rgb {
-        scale * self.most(self.ends[0].v1(bound.cos_o), bound.sin_sq, bound.cos_max, bound.cos_d)
-    }
-
-    /// See [`super::LobeModel::set_lane`].
-    #[inline]
-    pub fn set_lane(&self, lanes: &mut LobeLanes, lane: usize, scale: Rgb, wo: Vec3) {
-        lanes.scale.set(lane, scale);
-        lanes.masking[lane] = self.ends[0].v1(wo.z.min(1.0));
-    }
-
-    /// See [`super::LobeModel::add_value16`].
-    pub fn add_value16(&self, lanes: &LobeLanes, d: &Directions16, sum: &mut Vec3x16) {
-        for l in 0..LANES {
-            if let Some(d) = Directions::new(d.wo.get(l), d.wi.get(l)) {
-                sum.set(l, sum.get(l) + self.eval_pdf(lanes.scale.get(l), 0.0, &d).0);
-            }
-        }
-    }
-
-    /// See [`super::LobeModel::seen`].
-    #[inline]
-    pub fn seen(&self, probability: f32, wo: Vec3) -> SeenLobe {
-        SeenLobe { masking: self.v1(wo), density: probability * 0.5 * self.v1_exact(wo) }
-    }
-
-    /// See [`super::LobeModel::add_eval_pdf16`].
-    pub fn add_eval_pdf16(&self, scale: Rgb, seen: &SeenLobe, d: &Directions16, sum: &mut ValuePdf16) {
-        let (inverse, area) = (1.0 / (self.alpha * self.alpha), self.alpha.x * self.alpha.y);
-        let (mut slope_sq, mut cos, mut inv_length) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
-        for l in 0..LANES {
-            slope_sq[l] = d.x_sq[l] * inverse.x + d.y_sq[l] * inverse.y;
-            let stretched = self.stretched(d.wi.get(l));
-            inv_length[l] = 1.0 / stretched.length();
-            cos[l] = stretched.z * inv_length[l];
-        }
-        let density = self.unit.density16(&slope_sq, &d.cos_sq);
-        let reflectance = self.fresnel.reflectance16(&d.cos_d);
-        let mut masked = self.unit.v1_16(&cos);
-        let mut pdf = [0.0; LANES];
-        for l in 0..LANES {
-            let density = select(d.reflects(l), density[l] / area, 0.0);
-            let masking = select(d.reflects(l), masked[l] * inv_length[l], 0.0);
-            masked[l] = density * seen.masking * masking;
-            pdf[l] = density * seen.density;
-        }
-        sum.add(scale, &reflectance, &masked, &pdf);
-    }
-
-    /// See [`super::LobeModel::add_bound16`].
-    pub fn add_bound16(&self, lanes: &LobeLanes, bounds: &FacetBounds16, sum: &mut Vec3x16) {
-        for l in 0..LANES {
-            let cos = bounds.cos_max[l];
-            if cos > 0.0 {
-                let most = self.most(lanes.masking[l], bounds.sin_sq[l], cos, bounds.cos_d[l]);
-                sum.set(l, sum.get(l) + lanes.scale.get(l) * most);
-            }
-        }
+    #[inline(always)]
+    pub(super) fn bound<L: Lane>(&self, masking: L, bound: &FacetBound<L>) -> V3<L> {
+        let [narrow, wide] = &self.ends;
+        let wider = OVERSHOOT * OVERSHOOT * 0.5 * DirectionBound::WIDER * (wide.alpha / narrow.alpha);
+        let masked = wide.max_density(bound.sin_sq) * masking * narrow.max_g1(bound.cos_max) * wider;
+        self.fresnel.max_reflectance(bound.cos_d, self.fresnel.reflectance(1.0)).times(masked)
     }
 }

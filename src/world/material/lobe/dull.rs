@@ -1,7 +1,7 @@
 //! Lobes that scatter light broadly, to be tabulated.
 
-use super::{Directions, LobeModel};
-use base::math::Rgb;
+use super::{Facet, LobeModel};
+use base::math::{Rgb, V3};
 use glam::Vec3;
 
 /// A lobe, without its factor, that is neither a delta lobe nor followed by eye paths.
@@ -25,6 +25,8 @@ impl<'m> DullLobe<'m> {
     /// Returns the value in 1/sr for directions with z > 0.
     #[inline]
     pub fn eval(&self, wo: Vec3, wi: Vec3) -> Rgb {
-        Directions::new(wo, wi).map_or(Rgb::ZERO, |d| self.0.eval_pdf(Rgb::ONE, 1.0, &d).0)
+        let wo = V3::splat(wo);
+        let facet = Facet::<f32>::between(wo, V3::splat(wi));
+        self.0.value_pdf(&self.0.seen(wo), &facet).0.into()
     }
 }

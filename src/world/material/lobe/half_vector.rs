@@ -6,9 +6,8 @@
 //! Independently of c, the angle between n and h is at least half that between wi and the mirror direction, and the
 //! angle between wo and h is at most half the sum of the two inclinations.
 
-use super::{DirectionBound, DirectionBounds16};
-use base::math::{F32x16, LANES, Vec3x16, select};
-use glam::Vec3;
+use super::DirectionBound;
+use base::math::{Lane, V3};
 
 /// Rounding error of a cosine or of a product of two. It matters for α below 0.01.
 const SLACK: f32 = 5e-7;
@@ -16,106 +15,80 @@ const SLACK: f32 = 5e-7;
 /// Squared length of the sum of two unit directions below which they count as opposite, so that no facet is visible.
 const MIN_SUM_SQ: f32 = 1e-20;
 
-/// Pair of directions.
-#[derive(Clone, Copy, Debug)]
-pub(in crate::material) struct Directions {
-    pub wo: Vec3,
-    pub wi: Vec3,
-    /// Unit normal of the facets that reflect one into the other.
-    pub half: Vec3,
+/// Two directions and the facets that reflect one into the other.
+#[derive(Clone, Copy)]
+pub(in crate::material) struct Facet<L: Lane> {
+    pub wo: V3<L>,
+    pub wi: V3<L>,
+    /// Unit normal of the facets.
+    pub half: V3<L>,
+    /// Cosine between `wo` and `half`.
+    pub cos_d: L,
+    /// True if both directions are above the surface and a facet is visible.
+    pub reflects: L::Mask,
 }
 
-impl Directions {
-    /// Pairs two directions; `None` if they are opposite, so that no facet is visible.
-    #[inline]
-    pub fn new(wo: Vec3, wi: Vec3) -> Option<Directions> {
+impl<L: Lane> Facet<L> {
+    /// Pairs two directions. No facet is visible between opposite directions.
+    #[inline(always)]
+    pub fn between(wo: V3<L>, wi: V3<L>) -> Facet<L> {
         let sum = wo + wi;
-        let length_sq = sum.length_squared();
-        (length_sq >= MIN_SUM_SQ).then(|| Directions { wo, wi, half: sum / length_sq.sqrt() })
+        let length_sq = sum.length_sq();
+        let facet = Facet::with_half(wo, wi, sum.times(length_sq.max(L::from(MIN_SUM_SQ)).rsqrt()));
+        Facet { reflects: facet.reflects & length_sq.gt(L::from(MIN_SUM_SQ)), ..facet }
     }
-}
 
-/// Pairs of directions, in sixteen lanes.
-pub(in crate::material) struct Directions16<'a> {
-    pub wo: &'a Vec3x16,
-    pub wi: &'a Vec3x16,
-    /// Squared first coordinates of the facet normals.
-    pub x_sq: F32x16,
-    /// Squared second coordinates of the facet normals.
-    pub y_sq: F32x16,
-    /// Squared sines of the facet normals' inclinations; 0, like the cosines, if no facet is visible.
-    pub sin_sq: F32x16,
-    /// Squared cosines of the facet normals' inclinations.
-    pub cos_sq: F32x16,
-    /// Cosines between `wo` and facet normal.
-    pub cos_d: F32x16,
-}
-
-impl Directions16<'_> {
-    /// Pairs the directions of each lane.
+    /// Pairs two directions whose facet normal is known, and not blurred by the rounding of a short sum of directions.
     #[inline(always)]
-    pub fn new<'a>(wo: &'a Vec3x16, wi: &'a Vec3x16) -> Directions16<'a> {
-        let zero = [0.0; LANES];
-        let mut all =
-            Directions16 { wo, wi, x_sq: zero, y_sq: zero, sin_sq: zero, cos_sq: zero, cos_d: zero };
-        for l in 0..LANES {
-            let (wo, wi) = (wo.get(l), wi.get(l));
-            let h = wo + wi;
-            let length_sq = h.length_squared();
-            let inverse = select(length_sq > MIN_SUM_SQ, 1.0 / length_sq, 0.0);
-            all.x_sq[l] = h.x * h.x * inverse;
-            all.y_sq[l] = h.y * h.y * inverse;
-            all.sin_sq[l] = (h.x * h.x + h.y * h.y) * inverse;
-            all.cos_sq[l] = h.z * h.z * inverse;
-            let d = wo.dot(h) * inverse.sqrt();
-            all.cos_d[l] = select(d < 1.0, d, 1.0);
-        }
-        all
+    pub fn with_half(wo: V3<L>, wi: V3<L>, half: V3<L>) -> Facet<L> {
+        let cos_d = wo.dot(half).min(L::from(1.0));
+        Facet { wo, wi, half, cos_d, reflects: wo.z.is_positive() & wi.z.is_positive() }
     }
 
-    /// Sets the facet normals in the lanes of a mask, where rounding of a short sum of directions would blur them.
-    #[inline]
-    pub fn set_half(&mut self, mask: u16, half: &Vec3x16) {
-        for l in 0..LANES {
-            let (wo, h) = (self.wo.get(l), half.get(l));
-            let (set, d) = (mask >> l & 1 != 0, wo.dot(h));
-            self.x_sq[l] = select(set, h.x * h.x, self.x_sq[l]);
-            self.y_sq[l] = select(set, h.y * h.y, self.y_sq[l]);
-            self.sin_sq[l] = select(set, h.x * h.x + h.y * h.y, self.sin_sq[l]);
-            self.cos_sq[l] = select(set, h.z * h.z, self.cos_sq[l]);
-            self.cos_d[l] = select(set, select(d < 1.0, d, 1.0), self.cos_d[l]);
+    /// Pairs a direction with its reflection on the facets of a normal.
+    #[inline(always)]
+    pub fn reflected(wo: V3<L>, half: V3<L>) -> Facet<L> {
+        Facet::with_half(wo, half.times(wo.dot(half) * 2.0) - wo, half)
+    }
+
+    /// Returns `yes` where the mask is true, else `no`.
+    #[inline(always)]
+    pub fn select(mask: L::Mask, yes: Facet<L>, no: Facet<L>) -> Facet<L> {
+        Facet {
+            wo: yes.wo,
+            wi: V3::select(mask, yes.wi, no.wi),
+            half: V3::select(mask, yes.half, no.half),
+            cos_d: L::pick(mask, yes.cos_d, no.cos_d),
+            reflects: mask & yes.reflects | !mask & no.reflects,
         }
     }
 
-    /// Returns true if the lane's `wi` is above the surface and a facet is visible, for a `wo` above the surface.
+    /// Returns the squared sine and cosine of the facet normal's inclination.
     #[inline(always)]
-    pub fn reflects(&self, lane: usize) -> bool {
-        (self.wi.z[lane] > 0.0) & (self.sin_sq[lane] + self.cos_sq[lane] > 0.0)
+    pub fn inclination(&self) -> (L, L) {
+        (self.half.x.sq() + self.half.y.sq(), self.half.z.sq())
     }
 }
 
 /// Bounds for the facets that reflect a set of directions to `wo`.
-pub(in crate::material) struct FacetBound {
-    /// Cosine of `wo`, at most 1.
-    pub cos_o: f32,
+pub(in crate::material) struct FacetBound<L = f32> {
     /// Maximum cosine of a direction.
-    pub cos_max: f32,
+    pub cos_max: L,
     /// Minimum cosine of a direction.
-    pub cos_min: f32,
+    pub cos_min: L,
     /// Minimum squared sine of the facet normal's inclination.
-    pub sin_sq: f32,
+    pub sin_sq: L,
     /// Minimum cosine between `wo` and the facet normal.
-    pub cos_d: f32,
+    pub cos_d: L,
 }
 
-impl FacetBound {
+impl<L: Lane> FacetBound<L> {
     /// Bounds the facets. `cos_max` is that of the bound, at most 1 and above 0.
-    #[inline]
-    pub fn new(cos_o: f32, cos_max: f32, bound: &DirectionBound) -> FacetBound {
-        let cos_o = cos_o.min(1.0);
-        let cos_min = bound.cos_i_min.max(0.0).min(cos_max);
+    #[inline(always)]
+    pub fn new(cos_o: L, cos_max: L, bound: &DirectionBound<L>) -> FacetBound<L> {
+        let cos_o = cos_o.min(L::from(1.0));
+        let cos_min = bound.cos_i_min.positive().min(cos_max);
         FacetBound {
-            cos_o,
             cos_max,
             cos_min,
             sin_sq: min_sin_sq(cos_o, cos_min, cos_max, bound.cos_mirror_max),
@@ -124,53 +97,25 @@ impl FacetBound {
     }
 }
 
-/// [`FacetBound`] in all lanes. Lanes whose directions are all below the horizon are undefined.
-pub(in crate::material) struct FacetBounds16<'a> {
-    pub cos_max: &'a F32x16,
-    pub cos_min: F32x16,
-    pub sin_sq: F32x16,
-    pub cos_d: F32x16,
-}
-
-impl FacetBounds16<'_> {
-    /// Bounds the facets of each lane.
-    #[inline(always)]
-    pub fn new<'a>(cos_o: &F32x16, bounds: &'a DirectionBounds16) -> FacetBounds16<'a> {
-        let (mut sin_sq, mut cos_d, mut least) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
-        for l in 0..LANES {
-            let cos_o = if cos_o[l] < 1.0 { cos_o[l] } else { 1.0 };
-            let cos_max = bounds.cos_i_max[l];
-            let cos_min = if bounds.cos_i_min[l] > 0.0 { bounds.cos_i_min[l] } else { 0.0 };
-            let cos_min = if cos_min < cos_max { cos_min } else { cos_max };
-            least[l] = cos_min;
-            let mirror = bounds.cos_mirror_max[l];
-            sin_sq[l] = min_sin_sq(cos_o, cos_min, cos_max, mirror);
-            cos_d[l] = min_cos(cos_o, cos_min, mirror);
-        }
-        FacetBounds16 { cos_max: &bounds.cos_i_max, cos_min: least, sin_sq, cos_d }
-    }
-}
-
 /// Returns the minimum squared sine of the facet normal's inclination.
 #[inline(always)]
-fn min_sin_sq(cos_o: f32, cos_i_min: f32, cos_i_max: f32, cos_mirror: f32) -> f32 {
-    let at = |cos_i: f32| {
+fn min_sin_sq<L: Lane>(cos_o: L, cos_i_min: L, cos_i_max: L, cos_mirror: L) -> L {
+    let open = cos_mirror.rest() - L::from(SLACK);
+    let at = |cos_i: L| {
         // 1 - cos² θ_h; the order of the numerator avoids cancellation. The value is undefined if cos_i and cos_mirror
         // exclude each other; the bound below holds in that case.
-        let length_sq = 2.0 + 4.0 * cos_o * cos_i - 2.0 * cos_mirror;
-        let difference = cos_o - cos_i;
-        (2.0 * (1.0 - cos_mirror - SLACK) - difference * difference) / length_sq.max(SLACK)
+        let length_sq = (cos_o * cos_i * 2.0 + cos_mirror.rest()) * 2.0;
+        (open * 2.0 - (cos_o - cos_i).sq()) * length_sq.max(L::from(SLACK)).recip()
     };
     let by_cosines = at(cos_i_min).min(at(cos_i_max));
-    let by_mirror = 0.5 * (1.0 - cos_mirror - SLACK);
-    by_cosines.max(by_mirror).max(0.0)
+    by_cosines.max(open * 0.5).positive()
 }
 
 /// Returns the minimum cosine between `wo` and the facet normal.
 #[inline(always)]
-fn min_cos(cos_o: f32, cos_i_min: f32, cos_mirror: f32) -> f32 {
+fn min_cos<L: Lane>(cos_o: L, cos_i_min: L, cos_mirror: L) -> L {
     let product = cos_o * cos_i_min;
-    let sin_product = ((1.0 - cos_o * cos_o) * (1.0 - cos_i_min * cos_i_min)).max(0.0).sqrt();
-    let cos_between = (2.0 * product - cos_mirror).max(product - sin_product);
-    (0.5 * (1.0 + cos_between) - SLACK).max(0.0).sqrt()
+    let sin_product = (cos_o.sq().rest() * cos_i_min.sq().rest()).positive().sqrt();
+    let cos_between = (product * 2.0 - cos_mirror).max(product - sin_product);
+    (cos_between * 0.5 + L::from(0.5 - SLACK)).positive().sqrt()
 }

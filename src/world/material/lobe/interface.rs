@@ -1,11 +1,9 @@
 //! Specular reflection and refraction by a smooth dielectric interface: two lobes, each with its factor.
 
-use super::BsdfSample;
-use super::mean;
 use super::mirror::reflect;
+use super::{Delta, means};
 use crate::material::fresnel;
-use base::math::Rgb;
-use glam::Vec3;
+use base::math::{Lane, V3};
 
 /// Smooth interface, for either reflection or refraction.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -26,35 +24,37 @@ pub(in crate::material) enum Passage {
 
 impl Interface {
     /// See [`super::LobeModel::delta`]; `wo` may be on either side.
-    #[inline]
-    pub fn delta(&self, scale: Rgb, wo: Vec3) -> Option<BsdfSample> {
+    #[inline(always)]
+    pub fn delta<L: Lane>(&self, scale: V3<L>, wo: V3<L>) -> Delta<L> {
         let interface = self.interface(wo.z);
-        let weight = self.weight(scale, &interface);
+        let (weight, one) = (self.weight(scale, &interface), L::from(1.0));
+        let is_inclined = wo.z.abs().is_positive();
+        let passes = is_inclined & one.gt(interface.reflectance);
         match self.passage {
-            _ if wo.z == 0.0 => None,
-            Passage::Reflection => Some(BsdfSample::delta(reflect(wo), weight, 1.0)),
-            Passage::Refraction if interface.reflectance >= 1.0 => None,
+            Passage::Reflection => {
+                Delta { wi: reflect(wo), weight, eta: one, found: is_inclined, straight: false }
+            }
             Passage::Refraction if self.passes_straight() => {
-                Some(BsdfSample { straight: true, ..BsdfSample::delta(-wo, weight, 1.0) })
+                Delta { wi: -wo, weight, eta: one, found: passes, straight: true }
             }
             Passage::Refraction => {
-                let inv_eta = 1.0 / interface.eta;
-                let z = -interface.cos_t.copysign(wo.z);
-                let through = Vec3::new(-wo.x * inv_eta, -wo.y * inv_eta, z).normalize();
-                Some(BsdfSample::delta(through, weight, interface.eta))
+                let inv_eta = interface.eta.recip();
+                let z = L::pick(wo.z.is_positive(), -interface.cos_t, interface.cos_t);
+                let through = V3::new(-wo.x * inv_eta, -wo.y * inv_eta, z);
+                let wi = through.times(through.length_sq().rsqrt());
+                Delta { wi, weight, eta: interface.eta, found: passes, straight: false }
             }
         }
     }
 
     /// See [`super::LobeModel::sampling_weight`].
-    #[inline]
-    pub fn sampling_weight(&self, scale: Rgb, cos: f32) -> f32 {
+    #[inline(always)]
+    pub fn sampling_weight<L: Lane>(&self, scale: V3<L>, cos: L) -> L {
         let interface = self.interface(cos);
-        let weight = mean(self.weight(scale, &interface));
+        let weight = means(self.weight(scale, &interface)).keep(cos.abs().is_positive());
         match self.passage {
-            _ if cos == 0.0 => 0.0,
             Passage::Reflection => weight,
-            Passage::Refraction => weight * interface.eta * interface.eta,
+            Passage::Refraction => weight * interface.eta.sq(),
         }
     }
 
@@ -70,26 +70,23 @@ impl Interface {
     }
 
     /// Solves the interface; for a thin sheet, both interfaces with all reflections between them.
-    #[inline]
-    fn interface(&self, cos: f32) -> fresnel::Refraction {
+    #[inline(always)]
+    fn interface<L: Lane>(&self, cos: L) -> fresnel::Refraction<L> {
         if !self.thin {
             return fresnel::interface(cos, self.eta);
         }
-        let one = fresnel::interface(cos.abs(), self.eta);
-        let reflectance = 2.0 * one.reflectance / (1.0 + one.reflectance);
-        fresnel::Refraction { reflectance, cos_t: cos.abs(), eta: 1.0 }
+        let one = fresnel::interface(cos.abs(), self.eta).reflectance;
+        let reflectance = one * 2.0 / (one + L::from(1.0));
+        fresnel::Refraction { reflectance, cos_t: cos.abs(), eta: L::from(1.0) }
     }
 
     /// Returns the factor on radiance.
-    #[inline]
-    fn weight(&self, scale: Rgb, interface: &fresnel::Refraction) -> Rgb {
+    #[inline(always)]
+    fn weight<L: Lane>(&self, scale: V3<L>, interface: &fresnel::Refraction<L>) -> V3<L> {
         match self.passage {
-            Passage::Reflection => scale * interface.reflectance,
-            Passage::Refraction => {
-                let inv_eta = 1.0 / interface.eta;
-                // Refraction changes the solid angle of a pencil of rays, and radiance with it.
-                scale * ((1.0 - interface.reflectance) * inv_eta * inv_eta)
-            }
+            Passage::Reflection => scale.times(interface.reflectance),
+            // Refraction changes the solid angle of a pencil of rays, and radiance with it.
+            Passage::Refraction => scale.times(interface.reflectance.rest() / interface.eta.sq()),
         }
     }
 }

@@ -1,9 +1,8 @@
 //! Specular reflection on the front of a surface.
 
-use super::BsdfSample;
+use super::Delta;
 use crate::material::fresnel::Curve;
-use base::math::Rgb;
-use glam::Vec3;
+use base::math::{Lane, V3};
 use scene::Fresnel;
 
 /// Mirror with a reflectance by angle.
@@ -14,20 +13,21 @@ pub(in crate::material) struct Mirror {
 
 impl Mirror {
     /// See [`super::LobeModel::delta`].
-    #[inline]
-    pub fn delta(&self, scale: Rgb, wo: Vec3) -> Option<BsdfSample> {
-        (wo.z > 0.0).then(|| BsdfSample::delta(reflect(wo), self.weight(scale, wo.z), 1.0))
+    #[inline(always)]
+    pub fn delta<L: Lane>(&self, scale: V3<L>, wo: V3<L>) -> Delta<L> {
+        let (weight, found) = (self.weight(scale, wo.z), wo.z.is_positive());
+        Delta { wi: reflect(wo), weight, eta: L::from(1.0), found, straight: false }
     }
 
-    /// Returns the share of the light at the cosine `cos` that is reflected.
-    #[inline]
-    pub fn weight(&self, scale: Rgb, cos: f32) -> Rgb {
-        if cos > 0.0 { scale * self.fresnel.reflectance(cos) } else { Rgb::ZERO }
+    /// Returns the share of the light at the cosine `cos` > 0 that is reflected.
+    #[inline(always)]
+    pub fn weight<L: Lane>(&self, scale: V3<L>, cos: L) -> V3<L> {
+        scale * self.fresnel.reflected(cos)
     }
 }
 
 /// Reflects about the shading normal.
-#[inline]
-pub(super) fn reflect(wo: Vec3) -> Vec3 {
-    Vec3::new(-wo.x, -wo.y, wo.z)
+#[inline(always)]
+pub(super) fn reflect<L: Lane>(wo: V3<L>) -> V3<L> {
+    V3::new(-wo.x, -wo.y, wo.z)
 }

@@ -1,11 +1,10 @@
 //! A lobe of any kind: the dispatch over all lobes.
 
 use super::{
-    AnisotropicLobe, BsdfSample, ClearCoat, Directions, Directions16, FacetBound, FacetBounds16, Grazing,
-    Interface, LobeLanes, Mirror, ReflectedLobe, RoughInterface, RoughLobe, Sampled16, SeenLobe, Thin,
-    ValuePdf16, mean,
+    AnisotropicLobe, ClearCoat, Delta, Facet, FacetBound, Grazing, Interface, Mirror, ReflectedLobe,
+    RoughInterface, RoughLobe, SeenLobe, Thin, mean, means,
 };
-use base::math::{Rgb, Vec2x16, Vec3x16};
+use base::math::{LANES, Lane, Mask, Rgb, V3};
 use glam::{Vec2, Vec3};
 
 /// Maximum number of lobes of a material.
@@ -53,7 +52,13 @@ impl LobeModel {
         match self {
             LobeModel::Interface(interface) => interface.passes_straight(),
             LobeModel::Gap => true,
-            _ => false,
+            LobeModel::Rough(_)
+            | LobeModel::Anisotropic(_)
+            | LobeModel::Mirror(_)
+            | LobeModel::RoughInterface(_)
+            | LobeModel::ClearCoat(_)
+            | LobeModel::Grazing(_)
+            | LobeModel::Thin(_) => false,
         }
     }
 
@@ -77,7 +82,7 @@ impl LobeModel {
             | LobeModel::ClearCoat(_)
             | LobeModel::Anisotropic(_)
             | LobeModel::Thin(_) => true,
-            _ => false,
+            LobeModel::Mirror(_) | LobeModel::Interface(_) | LobeModel::Grazing(_) | LobeModel::Gap => false,
         }
     }
 
@@ -92,7 +97,7 @@ impl LobeModel {
             | LobeModel::ClearCoat(_)
             | LobeModel::Anisotropic(_)
             | LobeModel::Thin(_) => true,
-            _ => false,
+            LobeModel::Mirror(_) | LobeModel::Interface(_) | LobeModel::Grazing(_) | LobeModel::Gap => false,
         }
     }
 
@@ -103,77 +108,125 @@ impl LobeModel {
             LobeModel::Anisotropic(rough) => rough.min_alpha(),
             LobeModel::ClearCoat(coat) => coat.alpha(),
             LobeModel::Thin(thin) => thin.min_alpha(),
-            _ => 1.0,
+            LobeModel::Mirror(_)
+            | LobeModel::Interface(_)
+            | LobeModel::RoughInterface(_)
+            | LobeModel::Grazing(_)
+            | LobeModel::Gap => 1.0,
         }
     }
 
-    /// Returns the index of refraction on the far side over that on the side of `wo` for a rough lobe that refracts; 1
-    /// for other lobes.
-    #[inline]
-    pub fn refraction(&self, wo: Vec3) -> f32 {
-        match self {
-            LobeModel::RoughInterface(rough) => rough.refraction(wo),
-            _ => 1.0,
-        }
-    }
-
-    /// Returns value and density. `probability`, with which the lobe is chosen, is a factor on the density.
+    /// Returns the index of refraction on the far side over that on the side of the cosine `cos_o`, for a rough lobe
+    /// that refracts; 1 for other lobes.
     #[inline(always)]
-    pub fn eval_pdf(&self, scale: Rgb, probability: f32, directions: &Directions) -> (Rgb, f32) {
+    pub fn refraction<L: Lane>(&self, cos_o: L) -> L {
         match self {
-            LobeModel::Rough(rough) => rough.eval_pdf(scale, probability, directions),
-            LobeModel::Anisotropic(rough) => rough.eval_pdf(scale, probability, directions),
-            LobeModel::RoughInterface(rough) => rough.eval_pdf(scale, probability, directions),
-            LobeModel::ClearCoat(coat) => coat.eval_pdf(scale, probability, directions),
-            LobeModel::Grazing(grazing) => grazing.eval_pdf(scale, probability, directions),
-            LobeModel::Thin(thin) => thin.eval_pdf(scale, probability, directions),
-            _ => (Rgb::ZERO, 0.0),
+            LobeModel::RoughInterface(rough) => cos_o.each(|cos| rough.refraction(cos)),
+            LobeModel::Rough(_)
+            | LobeModel::Anisotropic(_)
+            | LobeModel::Mirror(_)
+            | LobeModel::Interface(_)
+            | LobeModel::ClearCoat(_)
+            | LobeModel::Grazing(_)
+            | LobeModel::Thin(_)
+            | LobeModel::Gap => L::from(1.0),
         }
     }
 
-    /// Samples a direction; `None` for delta lobes, or if the sampled facet reflects light into the surface.
-    #[inline]
-    pub fn sample(&self, wo: Vec3, u: Vec2) -> Option<Directions> {
+    /// Prepares a lobe for directions `wo`. Lobes that scatter light across the surface, and delta lobes, need nothing.
+    #[inline(always)]
+    pub fn seen<L: Lane>(&self, wo: V3<L>) -> SeenLobe<L> {
         match self {
+            LobeModel::Rough(rough) => rough.seen(wo),
+            LobeModel::Anisotropic(rough) => rough.seen(wo),
+            LobeModel::ClearCoat(coat) => coat.seen(wo),
+            LobeModel::Grazing(grazing) => grazing.seen(wo),
+            LobeModel::Mirror(_)
+            | LobeModel::Interface(_)
+            | LobeModel::RoughInterface(_)
+            | LobeModel::Thin(_)
+            | LobeModel::Gap => SeenLobe::none(),
+        }
+    }
+
+    /// Returns value and density of a lobe that is `seen` from the `wo` of the facet. Delta lobes have none.
+    #[inline(always)]
+    pub fn value_pdf<L: Lane>(&self, seen: &SeenLobe<L>, facet: &Facet<L>) -> (V3<L>, L) {
+        let (value, pdf) = match self {
+            LobeModel::Rough(rough) => rough.value_pdf(seen, facet),
+            LobeModel::Anisotropic(rough) => rough.value_pdf(seen, facet),
+            LobeModel::ClearCoat(coat) => coat.value_pdf(seen, facet),
+            LobeModel::Grazing(grazing) => grazing.value_pdf(seen, facet),
+            LobeModel::RoughInterface(rough) => {
+                return across(facet, |wo, wi| {
+                    let (value, pdf) = rough.value_pdf(wo, wi);
+                    (Rgb::splat(value), pdf)
+                });
+            }
+            LobeModel::Thin(thin) => return across(facet, |wo, wi| thin.value_pdf(wo, wi)),
+            LobeModel::Mirror(_) | LobeModel::Interface(_) | LobeModel::Gap => {
+                return (V3::zero(), L::from(0.0));
+            }
+        };
+        (value.keep(facet.reflects), pdf.keep(facet.reflects))
+    }
+
+    /// Samples directions in the lanes of `wanted`. Returns them with the facets that reflect light there, and the
+    /// lanes in which one was found. Delta lobes have none.
+    #[inline(always)]
+    pub fn sample<L: Lane>(&self, wo: V3<L>, u: [L; 2], wanted: L::Mask) -> (Facet<L>, L::Mask) {
+        let facet = match self {
             LobeModel::Rough(rough) => rough.sample(wo, u),
             LobeModel::Anisotropic(rough) => rough.sample(wo, u),
-            LobeModel::RoughInterface(rough) => rough.sample(wo, u),
             LobeModel::ClearCoat(coat) => coat.sample(wo, u),
             LobeModel::Grazing(grazing) => grazing.sample(wo, u),
-            LobeModel::Thin(thin) => thin.sample(wo, u),
-            _ => None,
-        }
+            LobeModel::RoughInterface(rough) => {
+                return sample_across(wo, u, wanted, |wo, u| rough.sample(wo, u));
+            }
+            LobeModel::Thin(thin) => return sample_across(wo, u, wanted, |wo, u| thin.sample(wo, u)),
+            LobeModel::Mirror(_) | LobeModel::Interface(_) | LobeModel::Gap => {
+                return (Facet::between(wo, wo), L::Mask::all(false));
+            }
+        };
+        (facet, facet.reflects)
     }
 
-    /// Returns the direction into which a delta lobe scatters light from `wo`, with probability 1.
+    /// Returns the directions into which a delta lobe scatters light from `wo`, with probability 1. Other lobes have
+    /// none.
     #[inline(always)]
-    pub fn delta(&self, scale: Rgb, wo: Vec3) -> Option<BsdfSample> {
+    pub fn delta<L: Lane>(&self, scale: V3<L>, wo: V3<L>) -> Delta<L> {
+        let straight = |found| Delta { wi: -wo, weight: scale, eta: L::from(1.0), found, straight: true };
         match self {
             LobeModel::Mirror(mirror) => mirror.delta(scale, wo),
             LobeModel::Interface(interface) => interface.delta(scale, wo),
-            LobeModel::Gap => {
-                let straight = BsdfSample { straight: true, ..BsdfSample::delta(-wo, scale, 1.0) };
-                (scale != Rgb::ZERO).then_some(straight)
-            }
-            _ => None,
+            LobeModel::Gap => straight(means(scale).is_positive()),
+            LobeModel::Rough(_)
+            | LobeModel::Anisotropic(_)
+            | LobeModel::RoughInterface(_)
+            | LobeModel::ClearCoat(_)
+            | LobeModel::Grazing(_)
+            | LobeModel::Thin(_) => straight(L::Mask::all(false)),
         }
     }
 
     /// Estimates the share of the light from `wo` that the lobe scatters, as a weight for the choice of a lobe.
     /// `transmittance` is the coat's for `wo`.
     #[inline(always)]
-    pub fn sampling_weight(&self, scale: Rgb, wo: Vec3, transmittance: f32) -> f32 {
-        match self {
+    pub fn sampling_weight<L: Lane>(&self, scale: V3<L>, wo: V3<L>, transmittance: L) -> L {
+        let each =
+            |weight: &dyn Fn(Rgb, f32) -> f32| L::from_fn(|lane| weight(scale.lane(lane), wo.z.lane(lane)));
+        let weight = match self {
             LobeModel::Rough(rough) => rough.sampling_weight(scale, wo.z, transmittance),
             LobeModel::Anisotropic(rough) => rough.sampling_weight(scale, wo.z),
-            LobeModel::Mirror(mirror) => mean(mirror.weight(scale, wo.z)),
-            LobeModel::Interface(interface) => interface.sampling_weight(scale, wo.z),
-            LobeModel::RoughInterface(rough) => rough.sampling_weight(scale, wo.z),
+            LobeModel::Mirror(mirror) => means(mirror.weight(scale, wo.z)),
             LobeModel::ClearCoat(coat) => coat.sampling_weight(scale, wo.z),
-            LobeModel::Grazing(grazing) => mean(grazing.albedo(scale, wo.z)),
-            LobeModel::Thin(thin) => mean(thin.albedo(scale, wo.z)),
-            LobeModel::Gap => mean(scale),
-        }
+            LobeModel::Grazing(grazing) => means(grazing.albedo(scale, wo.z)),
+            LobeModel::Interface(interface) => return interface.sampling_weight(scale, wo.z),
+            LobeModel::RoughInterface(rough) => return each(&|scale, cos| rough.sampling_weight(scale, cos)),
+            LobeModel::Thin(thin) => return each(&|scale, cos| mean(thin.albedo(scale, cos))),
+            LobeModel::Gap => return means(scale),
+        };
+        weight.keep(wo.z.is_positive())
     }
 
     /// Returns the albedo for light at the cosine `cos` > 0; 0 for delta lobes.
@@ -182,10 +235,10 @@ impl LobeModel {
             LobeModel::Rough(rough) => rough.mean_reflectance(scale, cos),
             LobeModel::Anisotropic(rough) => rough.albedo(scale, cos),
             LobeModel::RoughInterface(rough) => rough.albedo(scale, cos),
-            LobeModel::ClearCoat(coat) => coat.albedo(scale, cos),
-            LobeModel::Grazing(grazing) => grazing.albedo(scale, cos),
+            LobeModel::ClearCoat(coat) => coat.albedo(V3::splat(scale), cos).into(),
+            LobeModel::Grazing(grazing) => grazing.albedo(V3::splat(scale), cos).into(),
             LobeModel::Thin(thin) => thin.albedo(scale, cos),
-            _ => Rgb::ZERO,
+            LobeModel::Mirror(_) | LobeModel::Interface(_) | LobeModel::Gap => Rgb::ZERO,
         }
     }
 
@@ -194,7 +247,13 @@ impl LobeModel {
         match self {
             LobeModel::Rough(rough) => !rough.is_glossy(),
             LobeModel::Grazing(_) => true,
-            _ => false,
+            LobeModel::Anisotropic(_)
+            | LobeModel::Mirror(_)
+            | LobeModel::Interface(_)
+            | LobeModel::RoughInterface(_)
+            | LobeModel::ClearCoat(_)
+            | LobeModel::Thin(_)
+            | LobeModel::Gap => false,
         }
     }
 
@@ -203,8 +262,14 @@ impl LobeModel {
     pub fn diffuse_albedo(&self, scale: Rgb, cos: f32) -> Option<Rgb> {
         match self {
             LobeModel::Rough(rough) => rough.diffuse_albedo(scale, cos),
-            LobeModel::Grazing(grazing) => Some(grazing.albedo(scale, cos)),
-            _ => None,
+            LobeModel::Grazing(grazing) => Some(grazing.albedo(V3::splat(scale), cos).into()),
+            LobeModel::Anisotropic(_)
+            | LobeModel::Mirror(_)
+            | LobeModel::Interface(_)
+            | LobeModel::RoughInterface(_)
+            | LobeModel::ClearCoat(_)
+            | LobeModel::Thin(_)
+            | LobeModel::Gap => None,
         }
     }
 
@@ -214,89 +279,74 @@ impl LobeModel {
     pub fn reflected(&self, scale: Rgb, cos: f32) -> Option<ReflectedLobe> {
         match self {
             LobeModel::Rough(rough) => rough.reflected(scale, cos),
-            _ => None,
+            LobeModel::Anisotropic(_)
+            | LobeModel::Mirror(_)
+            | LobeModel::Interface(_)
+            | LobeModel::RoughInterface(_)
+            | LobeModel::ClearCoat(_)
+            | LobeModel::Grazing(_)
+            | LobeModel::Thin(_)
+            | LobeModel::Gap => None,
         }
     }
 
-    /// Returns an upper bound of value times cosine; 0 for delta lobes and lobes that scatter light across the surface.
+    /// Returns the factor of [`LobeModel::bound`] that depends on the cosine of `wo` alone.
     #[inline(always)]
-    pub fn bound(&self, scale: Rgb, bound: &FacetBound) -> Rgb {
+    pub fn max_masking<L: Lane>(&self, cos_o: L) -> L {
         match self {
-            LobeModel::Rough(rough) => rough.bound(scale, bound),
-            LobeModel::Anisotropic(rough) => rough.bound(scale, bound),
-            LobeModel::ClearCoat(coat) => coat.bound(scale, bound),
-            LobeModel::Grazing(grazing) => grazing.bound(scale, bound),
-            _ => Rgb::ZERO,
+            LobeModel::Rough(rough) => rough.max_masking(cos_o),
+            LobeModel::Anisotropic(rough) => rough.max_masking(cos_o),
+            LobeModel::ClearCoat(coat) => coat.max_masking(cos_o),
+            LobeModel::Grazing(grazing) => grazing.max_masking(cos_o),
+            LobeModel::Mirror(_)
+            | LobeModel::Interface(_)
+            | LobeModel::RoughInterface(_)
+            | LobeModel::Thin(_)
+            | LobeModel::Gap => L::from(0.0),
         }
     }
 
-    /// Sets a lane for `wo`, which is on the side of the normal.
-    #[inline]
-    pub fn set_lane(&self, lanes: &mut LobeLanes, lane: usize, scale: Rgb, wo: Vec3) {
+    /// Returns an upper bound of value times cosine, given [`LobeModel::max_masking`]; 0 for delta lobes and lobes that
+    /// scatter light across the surface.
+    #[inline(always)]
+    pub fn bound<L: Lane>(&self, masking: L, bound: &FacetBound<L>) -> V3<L> {
         match self {
-            LobeModel::Rough(rough) => rough.set_lane(lanes, lane, scale, wo),
-            LobeModel::Anisotropic(rough) => rough.set_lane(lanes, lane, scale, wo),
-            LobeModel::ClearCoat(coat) => coat.set_lane(lanes, lane, scale, wo),
-            LobeModel::Grazing(grazing) => grazing.set_lane(lanes, lane, scale, wo),
-            _ => {}
+            LobeModel::Rough(rough) => rough.bound(masking, bound),
+            LobeModel::Anisotropic(rough) => rough.bound(masking, bound),
+            LobeModel::ClearCoat(coat) => coat.bound(masking, bound),
+            LobeModel::Grazing(grazing) => grazing.bound(masking, bound),
+            LobeModel::Mirror(_)
+            | LobeModel::Interface(_)
+            | LobeModel::RoughInterface(_)
+            | LobeModel::Thin(_)
+            | LobeModel::Gap => V3::zero(),
         }
     }
+}
 
-    /// Adds the lobe's values, without the cosine, in all lanes.
-    #[inline]
-    pub fn add_value16(&self, lanes: &LobeLanes, directions: &Directions16, sum: &mut Vec3x16) {
-        match self {
-            LobeModel::Rough(rough) => rough.add_value16(lanes, directions, sum),
-            LobeModel::Anisotropic(rough) => rough.add_value16(lanes, directions, sum),
-            LobeModel::ClearCoat(coat) => coat.add_value16(lanes, directions, sum),
-            LobeModel::Grazing(grazing) => grazing.add_value16(lanes, directions, sum),
-            _ => {}
-        }
-    }
+/// Evaluates a lobe that scatters light across the surface, lane by lane.
+#[inline]
+fn across<L: Lane>(facet: &Facet<L>, value_pdf: impl Fn(Vec3, Vec3) -> (Rgb, f32)) -> (V3<L>, L) {
+    let mut pdfs = [0.0; LANES];
+    let values = V3::from_fn(|lane| {
+        let (value, pdf) = value_pdf(facet.wo.lane(lane), facet.wi.lane(lane));
+        pdfs[lane] = pdf;
+        value
+    });
+    (values, L::from_fn(|lane| pdfs[lane]))
+}
 
-    /// Prepares a lobe for `wo` on the side of the normal. `probability` is that of choosing the lobe. Lobes that
-    /// transmit light have no such form.
-    #[inline]
-    pub fn seen(&self, probability: f32, wo: Vec3) -> SeenLobe {
-        match self {
-            LobeModel::Rough(rough) => rough.seen(probability, wo),
-            LobeModel::Anisotropic(rough) => rough.seen(probability, wo),
-            LobeModel::ClearCoat(coat) => coat.seen(probability, wo),
-            LobeModel::Grazing(grazing) => grazing.seen(probability, wo),
-            _ => SeenLobe::default(),
-        }
-    }
-
-    /// Adds [`LobeModel::eval_pdf`] in all lanes, all of which have the `wo` of `seen`.
-    #[inline]
-    pub fn add_eval_pdf16(&self, scale: Rgb, seen: &SeenLobe, d: &Directions16, sum: &mut ValuePdf16) {
-        match self {
-            LobeModel::Rough(rough) => rough.add_eval_pdf16(scale, seen, d, sum),
-            LobeModel::Anisotropic(rough) => rough.add_eval_pdf16(scale, seen, d, sum),
-            LobeModel::ClearCoat(coat) => coat.add_eval_pdf16(scale, seen, d, sum),
-            LobeModel::Grazing(grazing) => grazing.add_eval_pdf16(scale, seen, d, sum),
-            _ => {}
-        }
-    }
-
-    /// Sets the lanes of a mask to [`LobeModel::sample`].
-    #[inline]
-    pub fn sample16(&self, wo: Vec3, u: &Vec2x16, mask: u16, sampled: &mut Sampled16) {
-        match self {
-            LobeModel::Rough(rough) => rough.sample16(wo, u, mask, sampled),
-            _ => sampled.one_by_one(mask, |l| self.sample(wo, u.get(l))),
-        }
-    }
-
-    /// Adds the lobe's bounds of value times cosine in all lanes.
-    #[inline]
-    pub fn add_bound16(&self, lanes: &LobeLanes, bounds: &FacetBounds16, sum: &mut Vec3x16) {
-        match self {
-            LobeModel::Rough(rough) => rough.add_bound16(lanes, bounds, sum),
-            LobeModel::Anisotropic(rough) => rough.add_bound16(lanes, bounds, sum),
-            LobeModel::ClearCoat(coat) => coat.add_bound16(lanes, bounds, sum),
-            LobeModel::Grazing(grazing) => grazing.add_bound16(lanes, bounds, sum),
-            _ => {}
-        }
-    }
+/// Samples a lobe that scatters light across the surface, lane by lane.
+#[inline]
+fn sample_across<L: Lane>(
+    wo: V3<L>,
+    [x, y]: [L; 2],
+    wanted: L::Mask,
+    sample: impl Fn(Vec3, Vec2) -> Option<Vec3>,
+) -> (Facet<L>, L::Mask) {
+    let wi = V3::from_fn(|lane| {
+        let found = || sample(wo.lane(lane), Vec2::new(x.lane(lane), y.lane(lane)));
+        if wanted.lane(lane) { found().unwrap_or_default() } else { Vec3::ZERO }
+    });
+    (Facet::between(wo, wi), wi.length_sq().is_positive())
 }

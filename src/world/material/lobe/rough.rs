@@ -7,15 +7,11 @@
 //! Paper: Walter et al., *Lightcuts*, 2005, section 4.1 (bounds).
 //! Deviations: single scattering only; masked light is lost.
 
-use super::{
-    DirectionBound, Directions, Directions16, FacetBound, FacetBounds16, LobeLanes, LobeShape, ReflectedLobe,
-    Sampled16, SeenLobe, ValuePdf16, mean,
-};
+use super::{DirectionBound, Facet, FacetBound, LobeShape, ReflectedLobe, SeenLobe, means};
 use crate::material::fresnel::Curve;
 use crate::material::microfacet::Microfacets;
 use crate::material::table::{ANGLES, AngleTable};
-use base::math::{LANES, Rgb, Vec2x16, Vec3x16, luminance, select};
-use glam::{Vec2, Vec3};
+use base::math::{Lane, Rgb, V3, luminance};
 use scene::Fresnel;
 use std::sync::Arc;
 
@@ -77,34 +73,33 @@ impl RoughLobe {
         self.facets.alpha <= SHARP_ALPHA
     }
 
-    /// See [`super::LobeModel::eval_pdf`].
-    #[inline]
-    pub(super) fn eval_pdf(&self, scale: Rgb, probability: f32, d: &Directions) -> (Rgb, f32) {
-        if !(d.wo.z > 0.0 && d.wi.z > 0.0) {
-            return (Rgb::ZERO, 0.0);
-        }
-        let density = self.facets.density(d.half);
-        let cos_o = d.wo.z.min(1.0);
-        let masked = density * self.facets.v1(cos_o) * self.facets.v1(d.wi.z.min(1.0));
-        let value = scale * self.fresnel.reflectance(d.wo.dot(d.half).min(1.0)) * masked;
-        (value, probability * 0.5 * density * self.facets.v1_exact(cos_o))
+    /// See [`super::LobeModel::seen`].
+    #[inline(always)]
+    pub(super) fn seen<L: Lane>(&self, wo: V3<L>) -> SeenLobe<L> {
+        SeenLobe { masking: self.facets.v1(wo.z), density: self.facets.v1_exact(wo.z) * 0.5 }
+    }
+
+    /// See [`super::LobeModel::value_pdf`]: F D V1(wo) V1(wi), and D V1(wo) / 2.
+    #[inline(always)]
+    pub(super) fn value_pdf<L: Lane>(&self, seen: &SeenLobe<L>, facet: &Facet<L>) -> (V3<L>, L) {
+        let (sin_sq, cos_sq) = facet.inclination();
+        let density = self.facets.density(sin_sq, cos_sq);
+        let masked = density * seen.masking * self.facets.v1(facet.wi.z);
+        (self.fresnel.reflected(facet.cos_d).times(masked), density * seen.density)
     }
 
     /// See [`super::LobeModel::sample`].
-    #[inline]
-    pub(super) fn sample(&self, wo: Vec3, u: Vec2) -> Option<Directions> {
-        let half = self.facets.sample_visible(wo, u);
-        let wi = (2.0 * wo.dot(half)) * half - wo;
-        (wo.z > 0.0 && wi.z > 0.0).then_some(Directions { wo, wi, half })
+    #[inline(always)]
+    pub(super) fn sample<L: Lane>(&self, wo: V3<L>, u: [L; 2]) -> Facet<L> {
+        Facet::reflected(wo, self.facets.sample_visible(wo, u))
     }
 
     /// See [`super::LobeModel::sampling_weight`].
-    #[inline]
-    pub(super) fn sampling_weight(&self, scale: Rgb, cos: f32, transmittance: f32) -> f32 {
+    #[inline(always)]
+    pub(super) fn sampling_weight<L: Lane>(&self, scale: V3<L>, cos: L, transmittance: L) -> L {
         match &self.albedo {
-            _ if cos <= 0.0 => 0.0,
-            Some(table) => mean(scale * table.lookup(cos)),
-            None => mean(scale) * (1.0 - transmittance).max(0.0),
+            Some(table) => means(scale * table.colours(cos)),
+            None => means(scale) * transmittance.rest().positive(),
         }
     }
 
@@ -136,89 +131,21 @@ impl RoughLobe {
         (facing > DIFFUSE_REFLECTANCE && peak.is_finite()).then_some(ReflectedLobe { albedo, peak, shape })
     }
 
+    /// See [`super::LobeModel::max_masking`].
+    #[inline(always)]
+    pub(super) fn max_masking<L: Lane>(&self, cos_o: L) -> L {
+        self.facets.v1(cos_o)
+    }
+
     /// See [`super::LobeModel::bound`].
-    #[inline]
-    pub(super) fn bound(&self, scale: Rgb, bound: &FacetBound) -> Rgb {
-        let density = self.facets.max_density(bound.sin_sq);
-        let masked = density * self.facets.v1(bound.cos_o) * 0.5 * self.facets.max_g1(bound.cos_max);
-        let reflectance = match &self.max_reflectance {
-            Some(table) => table.floor(bound.cos_d),
-            None => self.fresnel.reflectance(bound.cos_d),
-        };
-        scale * reflectance * (masked * DirectionBound::WIDER)
-    }
-
-    /// See [`super::LobeModel::set_lane`].
-    #[inline]
-    pub(super) fn set_lane(&self, lanes: &mut LobeLanes, lane: usize, scale: Rgb, wo: Vec3) {
-        lanes.scale.set(lane, scale);
-        lanes.masking[lane] = self.facets.v1(wo.z.min(1.0));
-    }
-
-    /// See [`super::LobeModel::add_value16`].
     #[inline(always)]
-    pub(super) fn add_value16(&self, lanes: &LobeLanes, d: &Directions16, sum: &mut Vec3x16) {
-        let reflectance = self.fresnel.reflectance16(&d.cos_d);
-        let mut masked = self.facets.density16(&d.sin_sq, &d.cos_sq);
-        let masking = self.facets.v1_16(&d.wi.z);
-        for l in 0..LANES {
-            masked[l] *= lanes.masking[l] * masking[l];
-            masked[l] = select(d.sin_sq[l] + d.cos_sq[l] > 0.0, masked[l], 0.0);
-        }
-        lanes.add(sum, &reflectance, &masked);
-    }
-
-    /// See [`super::LobeModel::seen`].
-    #[inline]
-    pub(super) fn seen(&self, probability: f32, wo: Vec3) -> SeenLobe {
-        let cos = wo.z.min(1.0);
-        SeenLobe { masking: self.facets.v1(cos), density: probability * 0.5 * self.facets.v1_exact(cos) }
-    }
-
-    /// See [`super::LobeModel::add_eval_pdf16`].
-    #[inline]
-    pub(super) fn add_eval_pdf16(&self, scale: Rgb, seen: &SeenLobe, d: &Directions16, sum: &mut ValuePdf16) {
-        let density = self.facets.density16(&d.sin_sq, &d.cos_sq);
-        let reflectance = self.fresnel.reflectance16(&d.cos_d);
-        let mut masked = self.facets.v1_16(&d.wi.z);
-        let mut pdf = [0.0; LANES];
-        for l in 0..LANES {
-            let reflects = d.reflects(l);
-            masked[l] = select(reflects, density[l] * seen.masking * masked[l], 0.0);
-            pdf[l] = select(reflects, density[l] * seen.density, 0.0);
-        }
-        sum.add(scale, &reflectance, &masked, &pdf);
-    }
-
-    /// See [`super::LobeModel::sample16`]; `wo` is on the side of the normal.
-    #[inline]
-    pub(super) fn sample16(&self, wo: Vec3, u: &Vec2x16, mask: u16, sampled: &mut Sampled16) {
-        match self.facets.ggx_normals16(wo, u) {
-            Some(half) => sampled.reflect(wo, &half, mask),
-            None => sampled.one_by_one(mask, |l| self.sample(wo, u.get(l))),
-        }
-    }
-
-    /// See [`super::LobeModel::add_bound16`].
-    #[inline(always)]
-    pub(super) fn add_bound16(&self, lanes: &LobeLanes, bounds: &FacetBounds16, sum: &mut Vec3x16) {
-        let mut masked = self.facets.max_density16(&bounds.sin_sq);
-        for l in 0..LANES {
-            let cos = bounds.cos_max[l];
-            let lit = cos > 0.0;
-            let max_g1 = self.facets.max_g1(if lit { cos } else { 1.0 });
-            masked[l] *= lanes.masking[l] * 0.5 * max_g1 * DirectionBound::WIDER;
-            masked[l] = if lit { masked[l] } else { 0.0 };
-        }
+    pub(super) fn bound<L: Lane>(&self, masking: L, bound: &FacetBound<L>) -> V3<L> {
+        let masked = self.facets.max_density(bound.sin_sq) * masking * self.facets.max_g1(bound.cos_max);
         let reflectance = match &self.max_reflectance {
-            Some(table) => {
-                let mut reflectance = Vec3x16::default();
-                (0..LANES).for_each(|l| reflectance.set(l, table.floor(bounds.cos_d[l])));
-                reflectance
-            }
-            None => self.fresnel.reflectance16(&bounds.cos_d),
+            Some(table) => V3::from_fn(|lane| table.floor(bound.cos_d.lane(lane))),
+            None => self.fresnel.reflected(bound.cos_d),
         };
-        lanes.add(sum, &reflectance, &masked);
+        reflectance.times(masked * (0.5 * DirectionBound::WIDER))
     }
 }
 
@@ -227,6 +154,6 @@ fn max_reflectance_table(fresnel: &Fresnel) -> AngleTable<Rgb> {
     let normal = fresnel.reflectance(1.0);
     AngleTable(std::array::from_fn(|i| {
         let cos = i as f32 / (ANGLES - 1) as f32;
-        fresnel.max_reflectance((cos - 1e-6).max(0.0), normal)
+        fresnel.max_reflectance(f32::max(cos - 1e-6, 0.0), normal).into()
     }))
 }

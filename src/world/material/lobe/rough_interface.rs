@@ -5,10 +5,10 @@
 //! lobes for any roughness.
 
 use super::interface::Passage;
-use super::{Directions, mean};
+use super::mean;
 use crate::material::fresnel;
 use crate::material::microfacet::Microfacets;
-use base::math::Rgb;
+use base::math::{Rgb, V3};
 use glam::{Vec2, Vec3};
 
 /// Minimum share of the samples for reflection and for refraction. Inclined facets may reflect or refract light that a
@@ -37,12 +37,13 @@ struct Facing {
 }
 
 impl RoughInterface {
-    /// Returns the index of refraction on the far side over that on the side of `wo` for refraction; 1 for reflection.
+    /// Returns the index of refraction on the far side over that on the side of the cosine `cos_o` for refraction; 1
+    /// for reflection.
     #[inline]
-    pub fn refraction(&self, wo: Vec3) -> f32 {
+    pub fn refraction(&self, cos_o: f32) -> f32 {
         match self.passage {
             Passage::Reflection => 1.0,
-            Passage::Refraction => self.eta_from(wo.z),
+            Passage::Refraction => self.eta_from(cos_o),
         }
     }
 
@@ -63,10 +64,10 @@ impl RoughInterface {
         Some(Facing { wo: turned(wo), wi: turned(wi), side, eta: self.eta_from(wo.z) })
     }
 
-    /// See [`super::LobeModel::eval_pdf`].
-    pub fn eval_pdf(&self, scale: Rgb, probability: f32, d: &Directions) -> (Rgb, f32) {
-        const NOTHING: (Rgb, f32) = (Rgb::ZERO, 0.0);
-        let Some(Facing { wo, wi, eta, .. }) = self.facing(d.wo, d.wi) else { return NOTHING };
+    /// Returns value and density for directions on any side.
+    pub fn value_pdf(&self, wo: Vec3, wi: Vec3) -> (f32, f32) {
+        const NOTHING: (f32, f32) = (0.0, 0.0);
+        let Some(Facing { wo, wi, eta, .. }) = self.facing(wo, wi) else { return NOTHING };
         let reflects = self.passage == Passage::Reflection;
         if wi.z == 0.0 || (wi.z > 0.0) != reflects {
             return NOTHING;
@@ -78,7 +79,7 @@ impl RoughInterface {
         if cos_o <= 0.0 || (cos_i > 0.0) != reflects {
             return NOTHING;
         }
-        let density = self.facets.density(half);
+        let density = self.facets.density(half.x * half.x + half.y * half.y, half.z * half.z);
         let (out, into) = (wo.z.min(1.0), wi.z.abs().min(1.0));
         let masked = density * self.facets.v1(out) * self.facets.v1(into);
         let visible = 2.0 * density * self.facets.v1_exact(out) * cos_o;
@@ -92,14 +93,14 @@ impl RoughInterface {
                 ((1.0 - reflectance) * masked * 4.0 * cos_o * change, eta * eta * change)
             }
         };
-        let (value, pdf) = (scale * value, probability * visible * per_angle);
+        let pdf = visible * per_angle;
         if value.is_finite() && pdf.is_finite() { (value, pdf) } else { NOTHING }
     }
 
-    /// See [`super::LobeModel::sample`].
-    pub fn sample(&self, wo: Vec3, u: Vec2) -> Option<Directions> {
+    /// Samples a direction; `None` if the facet scatters light to the wrong side.
+    pub fn sample(&self, wo: Vec3, u: Vec2) -> Option<Vec3> {
         let facing = self.facing(wo, wo)?;
-        let half = self.facets.sample_visible(facing.wo, u);
+        let half = Vec3::from(self.facets.sample_visible(V3::splat(facing.wo), u.to_array()));
         let cos = facing.wo.dot(half);
         let mut wi = match self.passage {
             Passage::Reflection => 2.0 * cos * half - facing.wo,
@@ -115,7 +116,7 @@ impl RoughInterface {
             return None;
         }
         wi.z *= facing.side;
-        Some(Directions { wo, wi, half: Vec3::new(half.x, half.y, half.z * facing.side) })
+        Some(wi)
     }
 
     /// See [`super::LobeModel::sampling_weight`].

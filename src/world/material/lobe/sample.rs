@@ -1,6 +1,6 @@
 //! A sampled direction and its weight.
 
-use base::math::Rgb;
+use base::math::{Lane, Rgb, V3};
 use glam::Vec3;
 
 /// Sampled direction.
@@ -20,10 +20,15 @@ pub struct BsdfSample {
     pub straight: bool,
 }
 
-impl BsdfSample {
-    /// Makes the sample of a delta lobe that is chosen with probability 1.
-    #[inline]
-    pub(in crate::material) fn delta(wi: Vec3, weight: Rgb, eta: f32) -> BsdfSample {
-        BsdfSample { wi, weight, pdf: 1.0, delta: true, eta, straight: false }
-    }
+/// Directions into which a delta lobe scatters light, with probability 1.
+pub(in crate::material) struct Delta<L: Lane> {
+    pub wi: V3<L>,
+    /// Reflectance or transmittance, for radiance.
+    pub weight: V3<L>,
+    /// Index of refraction on the side of `wi` over that on the side of `wo`.
+    pub eta: L,
+    /// Lanes in which light is scattered.
+    pub found: L::Mask,
+    /// True if light keeps its direction.
+    pub straight: bool,
 }

@@ -6,9 +6,9 @@
 //! Paper: B. Burley, *Extending the Disney BRDF to a BSDF with Integrated Subsurface Scattering*, 2015, section 5.
 //! Deviations: there is no bound, because lightcuts gather on one side: eye paths follow these lobes.
 
-use super::{AnisotropicLobe, Directions, RoughLobe};
+use super::{AnisotropicLobe, Facet, RoughLobe};
 use crate::material::fresnel;
-use base::math::Rgb;
+use base::math::{Rgb, V3};
 use base::sampling::cosine_hemisphere;
 use glam::{Vec2, Vec3};
 use std::f32::consts::FRAC_1_PI;
@@ -44,14 +44,16 @@ impl ThinFacets {
         }
     }
 
-    fn eval_pdf(&self, scale: Rgb, probability: f32, d: &Directions) -> (Rgb, f32) {
-        match self {
-            ThinFacets::Isotropic(rough) => rough.eval_pdf(scale, probability, d),
-            ThinFacets::Anisotropic(rough) => rough.eval_pdf(scale, probability, d),
-        }
+    fn value_pdf(&self, facet: &Facet<f32>) -> (Rgb, f32) {
+        let (value, pdf) = match self {
+            ThinFacets::Isotropic(rough) => rough.value_pdf(&rough.seen(facet.wo), facet),
+            ThinFacets::Anisotropic(rough) => rough.value_pdf(&rough.seen(facet.wo), facet),
+        };
+        (value.into(), pdf)
     }
 
-    fn sample(&self, wo: Vec3, u: Vec2) -> Option<Directions> {
+    fn sample(&self, wo: Vec3, u: Vec2) -> Facet<f32> {
+        let (wo, u) = (V3::splat(wo), u.to_array());
         match self {
             ThinFacets::Isotropic(rough) => rough.sample(wo, u),
             ThinFacets::Anisotropic(rough) => rough.sample(wo, u),
@@ -74,35 +76,34 @@ impl Thin {
         }
     }
 
-    /// See [`super::LobeModel::eval_pdf`].
-    pub fn eval_pdf(&self, scale: Rgb, probability: f32, d: &Directions) -> (Rgb, f32) {
+    /// Returns value and density for directions on any side.
+    pub fn value_pdf(&self, wo: Vec3, wi: Vec3) -> (Rgb, f32) {
         const NOTHING: (Rgb, f32) = (Rgb::ZERO, 0.0);
-        if !(d.wo.z > 0.0 && d.wi.z < 0.0) {
+        if !(wo.z > 0.0 && wi.z < 0.0) {
             return NOTHING;
         }
         match self {
-            Thin::Diffuse => (scale * FRAC_1_PI, probability * -d.wi.z * FRAC_1_PI),
-            Thin::Rough { facets, eta } => match Directions::new(d.wo, through(d.wi)) {
-                Some(turned) if is_lit(d.wi, turned.half) => {
-                    let (value, pdf) = facets.eval_pdf(scale, probability, &turned);
-                    (value * (1.0 - fresnel::dielectric(d.wo.dot(turned.half).clamp(0.0, 1.0), *eta)), pdf)
+            Thin::Diffuse => (Rgb::splat(FRAC_1_PI), -wi.z * FRAC_1_PI),
+            Thin::Rough { facets, eta } => {
+                let turned = Facet::<f32>::between(V3::splat(wo), V3::splat(through(wi)));
+                if !(turned.reflects && is_lit(wi, &turned)) {
+                    return NOTHING;
                 }
-                _ => NOTHING,
-            },
+                let (value, pdf) = facets.value_pdf(&turned);
+                (value * (1.0 - fresnel::dielectric(turned.cos_d.max(0.0), *eta)), pdf)
+            }
         }
     }
 
-    /// See [`super::LobeModel::sample`].
-    pub fn sample(&self, wo: Vec3, u: Vec2) -> Option<Directions> {
-        if !(wo.z > 0.0) {
-            return None;
-        }
+    /// Samples a direction; `None` if the facet scatters light to the wrong side.
+    pub fn sample(&self, wo: Vec3, u: Vec2) -> Option<Vec3> {
         match self {
-            Thin::Diffuse => Some(Directions { wo, wi: through(cosine_hemisphere(u)), half: Vec3::Z }),
+            _ if !(wo.z > 0.0) => None,
+            Thin::Diffuse => Some(through(cosine_hemisphere(u))),
             Thin::Rough { facets, .. } => {
-                let turned = facets.sample(wo, u)?;
-                let wi = through(turned.wi);
-                is_lit(wi, turned.half).then_some(Directions { wi, ..turned })
+                let turned = facets.sample(wo, u);
+                let wi = through(turned.wi.into());
+                (turned.reflects && is_lit(wi, &turned)).then_some(wi)
             }
         }
     }
@@ -119,6 +120,6 @@ impl Thin {
 
 /// Returns true if the direction leaves a facet on the side away from its normal.
 #[inline]
-fn is_lit(wi: Vec3, half: Vec3) -> bool {
-    wi.dot(half) < 0.0
+fn is_lit(wi: Vec3, facet: &Facet<f32>) -> bool {
+    wi.dot(facet.half.into()) < 0.0
 }

@@ -1,7 +1,7 @@
 //! Sixteen uniform materials at once give the same values as each by itself.
 
 use super::*;
-use ::base::math::{F32x16, LANES, Vec3x16};
+use ::base::math::{LANES, Lane, Vec3x16, f32x16};
 
 #[test]
 fn lanes_respond_and_are_bounded_as_single_materials_are() {
@@ -24,30 +24,27 @@ fn lanes_respond_and_are_bounded_as_single_materials_are() {
                         wi.z[lane] *= -1.0;
                     }
                 }
-                let response = alike.response(&wi);
-                let mut cosines = || -> F32x16 { std::array::from_fn(|_| 2.0 * random.next() - 1.0) };
-                let bounds = DirectionBounds16 {
-                    cos_i_max: cosines(),
-                    cos_i_min: cosines(),
-                    cos_mirror_max: cosines(),
-                };
+                let response = alike.response(wi.load());
+                let mut cosines = || f32x16::from_fn(|_| 2.0 * random.next() - 1.0);
+                let bounds =
+                    DirectionBound { cos_i_max: cosines(), cos_i_min: cosines(), cos_mirror_max: cosines() };
                 let most = alike.bound(&bounds);
                 for (lane, &wo) in wo.iter().enumerate() {
                     let wi = wi.get(lane);
                     let single = bsdf.eval(wo, wi) * wi.z.max(0.0);
-                    let difference = (response.get(lane) - single).abs();
+                    let difference = (response.lane(lane) - single).abs();
                     // Rounding of the directions, of which the sharpest lobe makes the most.
                     let name = &material.name;
                     assert!(difference.cmple(single * 1e-4 + 1e-6).all(), "{name} {wo} {wi}: {single}");
                     let single = bsdf.bound(
                         wo,
                         &DirectionBound {
-                            cos_i_max: bounds.cos_i_max[lane],
-                            cos_i_min: bounds.cos_i_min[lane],
-                            cos_mirror_max: bounds.cos_mirror_max[lane],
+                            cos_i_max: bounds.cos_i_max.lane(lane),
+                            cos_i_min: bounds.cos_i_min.lane(lane),
+                            cos_mirror_max: bounds.cos_mirror_max.lane(lane),
                         },
                     );
-                    let difference = (most.get(lane) - single).abs();
+                    let difference = (most.lane(lane) - single).abs();
                     assert!(difference.cmple(single * 1e-5).all(), "{name} {wo} {bounds:?}: {single}");
                 }
             }

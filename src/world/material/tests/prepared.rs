@@ -138,7 +138,9 @@ fn lanes_are_sampled_as_single_directions_are() {
                         let pdf = if exact.delta { exact.pdf } else { samples.pdf[lane] };
                         let weight = samples.weight.get(lane);
                         let errors = [error_of(weight, exact.weight), error(pdf, exact.pdf)];
-                        assert!(errors.iter().all(|&e| e < TOLERANCE), "{name} {wo}: {errors:?}, {exact:?}");
+                        // The rounding of a direction weighs most at the horizon.
+                        let tolerance = TOLERANCE.max(2e-6 / exact.wi.z.abs());
+                        assert!(errors.iter().all(|&e| e < tolerance), "{name} {wo}: {errors:?}, {exact:?}");
                     }
                 }
             }
