@@ -1,16 +1,15 @@
 //! Paths of photons that reach surfaces by mirrors and glass alone.
 
 use super::aims::{Aimed, Aims, CellYield};
-use crate::emission::{EmissionSample, MAX_CORRECTION, PhotonEmitter};
+use crate::emission::{Carried, EmissionSample, MAX_EDGES, PhotonEmitter, Walk};
 use base::math::{Rgb, luminance};
 use base::parallel::ShortRuns;
 use base::progress::Control;
 use base::sampling::{Sampler, hash};
 use glam::Vec3;
 use rayon::prelude::*;
-use std::ops::Range;
-use world::shadow;
-use world::{Interior, World, beyond};
+use std::ops::{ControlFlow, Range};
+use world::World;
 
 /// Number of paths per task.
 const CHUNK: u32 = 1024;
@@ -36,12 +35,6 @@ const MAX_RAYS: f32 = 1_200_000.0;
 /// Minimum share of the flux that mirrors and glass send on. Below it paths find all the light, unless the scene has
 /// emitters that no path can meet.
 const MIN_FLUX: f32 = 3e-4;
-
-/// Maximum number of edges of a path: only a closed scene of mirrors reaches it.
-const MAX_EDGES: u32 = 256;
-
-/// Maximum probability of survival, so that a path ends even if nothing absorbs.
-const MAX_SURVIVAL: f32 = 0.98;
 
 /// Light that arrives at a surface by delta lobes.
 #[derive(Clone, Copy, Debug)]
@@ -184,7 +177,7 @@ impl<'a, 'w> CausticTracer<'a, 'w> {
                     continue;
                 }
                 let before = chunk.photons.len();
-                chunk.rays += follow(self.world, emission, sampler, self.max_edges, &mut chunk.photons);
+                chunk.rays += self.follow(emission, sampler, &mut chunk.photons);
                 let left = chunk.photons.len() - before;
                 chunk.evenly += left as f32 / boost;
                 chunk.cells.push((cell, left));
@@ -193,61 +186,20 @@ impl<'a, 'w> CausticTracer<'a, 'w> {
         };
         tasks.into_par_iter().one_by_one().map(trace).collect()
     }
-}
 
-/// Follows a path by delta lobes. Behind the first mirror or glass, keeps a photon at every surface with other lobes.
-/// Returns the number of rays.
-fn follow(
-    world: &World,
-    first: EmissionSample,
-    sampler: &mut Sampler,
-    max_edges: u32,
-    photons: &mut Vec<CausticPhoton>,
-) -> u64 {
-    let EmissionSample { mut ray, mut flux, radiance } = first;
-    let (mut edges, mut is_bent, mut interior) = (1, false, Interior::NONE);
-    for rays in 1..=u64::from(MAX_EDGES) {
-        let Some(surface) = world.intersect(&ray) else { return rays };
-        if world.absorbs() {
-            flux *= world.edge_shares(interior, &surface, ray.direction, ray.t_near)[1];
-        }
-        let towards_light = -ray.direction;
-        let wi = surface.frame.to_local(towards_light);
-        let cos_g = surface.normal.dot(towards_light);
-        if wi.z * cos_g <= 0.0 {
-            return rays; // the two normals disagree on which side this is
-        }
-        let bsdf = world.bsdf(&surface);
-        if is_bent && bsdf.has_smooth() {
-            let flux = flux * (wi.z / cos_g).min(MAX_CORRECTION);
-            if flux.is_finite() && surface.position.is_finite() {
-                let position = surface.position;
+    /// Follows a path by delta lobes. Behind the first mirror or glass, keeps a photon at every surface with other
+    /// lobes. Returns the number of rays.
+    fn follow(&self, first: EmissionSample, sampler: &mut Sampler, photons: &mut Vec<CausticPhoton>) -> u64 {
+        let EmissionSample { ray, flux, radiance } = first;
+        let (world, max_edges) = (self.world, self.max_edges);
+        let walk = Walk { world, carried: Carried::Flux, max_edges, by_delta: true };
+        walk.follow(ray, flux, sampler, |at, _| {
+            let (position, flux) = (at.surface.position, at.weight);
+            if at.is_bent && at.bsdf.has_smooth() && flux.is_finite() && position.is_finite() {
+                let (towards_light, edges) = (at.back, at.edges);
                 photons.push(CausticPhoton { position, towards_light, flux, radiance, edges, radius: 0.0 });
             }
-        }
-        if edges == max_edges || !bsdf.has_delta() {
-            return rays;
-        }
-        let (u_lobe, u_direction, u_survival) = (sampler.next_1d(), sampler.next_2d(), sampler.next_1d());
-        let Some(s) = bsdf.sample(wi, u_lobe, u_direction).filter(|s| s.delta) else { return rays };
-        let direction = surface.frame.to_world(s.wi);
-        if surface.normal.dot(direction) * s.wi.z <= 0.0 {
-            return rays;
-        }
-        let next = flux * s.weight * (s.eta * s.eta);
-        let survival = (luminance(next) / luminance(flux)).min(MAX_SURVIVAL);
-        if !next.is_finite() || u_survival >= survival {
-            return rays;
-        }
-        flux = next / survival;
-        interior = world.interior_after(interior, &surface, direction, s.straight);
-        edges += 1;
-        if s.straight {
-            ray = beyond(&ray, surface.position, surface.normal, surface.t);
-        } else {
-            is_bent = true;
-            ray = shadow::ray_from(surface.position, surface.normal, direction);
-        }
+            ControlFlow::Continue(())
+        })
     }
-    u64::from(MAX_EDGES)
 }

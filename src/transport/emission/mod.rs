@@ -3,7 +3,8 @@
 //! - [`PhotonEmitter`] begins paths at an emitter; [`target`] and [`lit_sphere`] direct them at the scene;
 //! - [`plan`] holds the shares of paths by emitter and their aims. [`planning`] makes a plan from pilot paths, and
 //!   [`openings`] aims paths from infinitely far;
-//! - [`tracing`] follows the paths of a plan; [`trace_photons`] traces as many as are wanted.
+//! - [`walk`] goes from surface to surface; [`tracing`] walks the paths of a plan, and [`trace_photons`] traces as many
+//!   as are wanted.
 
 mod emitter;
 mod entries;
@@ -17,12 +18,12 @@ mod photons;
 mod plan;
 mod planning;
 mod sample;
-mod short_paths;
 mod target;
 mod tracing;
+mod walk;
 
 pub use emitter::PhotonEmitter;
 pub use photon::{Photon, PhotonCounts, PhotonHit, PhotonSettings};
 pub use photons::{trace_in_parts, trace_photons};
 pub use sample::{EmissionNumbers, EmissionSample};
-pub use tracing::MAX_CORRECTION;
+pub use walk::{Carried, MAX_EDGES, Walk, WalkVertex};

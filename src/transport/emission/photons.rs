@@ -4,7 +4,8 @@
 //! Units: flux in watts, to be divided by the number of paths.
 
 use super::planning::plan;
-use super::tracing::{CHUNK, MAX_EDGES, PathTracer, PhotonChunk};
+use super::tracing::{CHUNK, PathTracer, PhotonChunk};
+use super::walk::MAX_EDGES;
 use super::{PhotonCounts, PhotonEmitter, PhotonHit, PhotonSettings};
 use base::parallel::ShortRuns;
 use base::progress::Control;
