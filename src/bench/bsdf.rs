@@ -8,7 +8,7 @@ use base::sampling::uniform_sphere;
 use glam::{Vec2, Vec3};
 use scene::{Coat, Distribution, Fresnel, Lobe, Material, MaterialId, Reflectance, Roughness, Scene};
 use std::hint::black_box;
-use world::material::{Bsdf, DirectionBound, Materials, PreparedBsdf};
+use world::material::{Bsdf, Bsdfs16, DirectionBound, Materials};
 
 pub(super) const BENCHMARK: Benchmark = Benchmark {
     name: "bsdf",
@@ -101,7 +101,7 @@ fn cases_of_packets<'a>(
         });
         case(["evaluate", &material.name, "16"], first, |bsdf, packets| {
             for (wo, wi, _) in packets.each() {
-                black_box(&PreparedBsdf::new(*bsdf, wo).eval_pdf16(wi));
+                black_box(&Bsdfs16::new(Vec3x16::splat(wo), |_| *bsdf).eval_pdf(wi, !0));
             }
         });
         case(["sample", &material.name, "1"], first + 2, |bsdf, packets| {
@@ -113,7 +113,7 @@ fn cases_of_packets<'a>(
         });
         case(["sample", &material.name, "16"], first + 2, |bsdf, packets| {
             for (wo, wi, u) in packets.each() {
-                black_box(&PreparedBsdf::new(*bsdf, wo).sample16(&wi.z, u, !0));
+                black_box(&Bsdfs16::new(Vec3x16::splat(wo), |_| *bsdf).sample(&wi.z, u, !0));
             }
         });
     }

@@ -5,7 +5,7 @@
 //!
 //! Units: relative errors of the functions are below 3e-7.
 
-use super::lanes::{F32x16, LANES};
+use super::lanes::{F32x16, LANES, U32x16};
 use std::ops::{Add, AddAssign, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 use wide::{i32x16, u32x16};
 
@@ -241,6 +241,19 @@ impl Mask16 {
     pub fn bits(self) -> u16 {
         self.0.to_bitmask() as u16
     }
+
+    /// Sets the lanes of the mask to other numbers.
+    #[inline(always)]
+    pub fn put(self, row: &mut F32x16, values: &F32x16) {
+        *row = f32x16::pick(self, f32x16::new(*values), f32x16::new(*row)).to_array();
+    }
+
+    /// Sets the lanes of the mask to other whole numbers.
+    #[inline(always)]
+    pub fn put_u32(self, row: &mut U32x16, values: &U32x16) {
+        let mask: u32x16 = bytemuck::cast(self.0);
+        *row = mask.select(u32x16::new(*values), u32x16::new(*row)).to_array();
+    }
 }
 
 macro_rules! logic {
@@ -395,6 +408,11 @@ mod tests {
             assert_eq!((mask.bits(), (!mask).bits(), mask.any()), (bits, !bits, bits != 0));
             let row = f32x16::pick(mask, f32x16::from(1.0), f32x16::from(f32::NAN));
             (0..LANES).for_each(|i| assert_eq!(row.lane(i) == 1.0, bits >> i & 1 != 0));
+            let (mut numbers, mut counts) = ([f32::NAN; LANES], [5; LANES]);
+            mask.put(&mut numbers, &[1.0; LANES]);
+            mask.put_u32(&mut counts, &[8; LANES]);
+            assert!((0..LANES).all(|i| numbers[i].is_nan() == row.lane(i).is_nan()));
+            assert_eq!(counts.map(|count| count == 8), numbers.map(|number| number == 1.0));
         }
         // A comparison with NaN holds in no lane.
         assert!(!f32x16::from(f32::NAN).is_positive().any());

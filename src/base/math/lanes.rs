@@ -103,20 +103,6 @@ impl Vec3x16 {
         }
     }
 
-    /// Sets the lanes in which `bits` are set to a vector (see [`blend`]).
-    #[inline(always)]
-    pub fn fill(&mut self, bits: &U32x16, v: Vec3) {
-        self.blend(bits, &Vec3x16::splat(v));
-    }
-
-    /// Sets the lanes in which `bits` are set to the vectors of other lanes (see [`blend`]).
-    #[inline(always)]
-    pub fn blend(&mut self, bits: &U32x16, v: &Vec3x16) {
-        blend(&mut self.x, bits, &v.x);
-        blend(&mut self.y, bits, &v.y);
-        blend(&mut self.z, bits, &v.z);
-    }
-
     /// Returns the vector in a lane.
     #[inline(always)]
     pub fn get(&self, lane: usize) -> Vec3 {
@@ -130,14 +116,6 @@ impl Vec3x16 {
         self.y[lane] = v.y;
         self.z[lane] = v.z;
     }
-}
-
-/// Returns `yes` if the condition holds, else `no`, without a branch.
-///
-/// Loops with `if` may compile to masked stores, whose values later loads await for dozens of cycles.
-#[inline(always)]
-pub fn select(condition: bool, yes: f32, no: f32) -> f32 {
-    std::hint::select_unpredictable(condition, yes, no)
 }
 
 /// Returns the mask of the first `count` lanes, at most all.
@@ -164,34 +142,6 @@ pub fn lanes_with(row: &U32x16, value: u32) -> u16 {
         mask |= u32::from(row[i] == value) << i;
     }
     mask as u16
-}
-
-/// Returns numbers with all bits set in the lanes of a mask, and 0 in other lanes, for [`blend`].
-#[inline(always)]
-pub fn bits_of(mask: u16) -> U32x16 {
-    let mut bits = [0; LANES];
-    for i in 0..LANES {
-        bits[i] = 0u32.wrapping_sub(u32::from(mask) >> i & 1);
-    }
-    bits
-}
-
-/// Sets the lanes in which `bits` are set to those of `values`. Other lanes must have no bit set.
-///
-/// Logic on bits becomes vector instructions, where a choice by a mask becomes branches.
-#[inline(always)]
-pub fn blend(row: &mut F32x16, bits: &U32x16, values: &F32x16) {
-    for i in 0..LANES {
-        row[i] = f32::from_bits((values[i].to_bits() & bits[i]) | (row[i].to_bits() & !bits[i]));
-    }
-}
-
-/// Sets the lanes in which `bits` are set to those of `values`, for whole numbers (see [`blend`]).
-#[inline(always)]
-pub fn blend_u32(row: &mut U32x16, bits: &U32x16, values: &U32x16) {
-    for i in 0..LANES {
-        row[i] = (values[i] & bits[i]) | (row[i] & !bits[i]);
-    }
 }
 
 /// Returns the lanes of a mask in ascending order.
@@ -223,26 +173,5 @@ mod tests {
         lanes_in(mask).for_each(|lane| flags[lane] = 7);
         assert_eq!(mask_of(&flags), mask);
         assert_eq!((lanes_with(&flags, 7), lanes_with(&flags, 0), lanes_with(&flags, 1)), (mask, !mask, 0));
-    }
-
-    #[test]
-    fn blends_set_the_lanes_of_a_mask_alone() {
-        let numbers = std::array::from_fn(|i| i as f32 - 3.5);
-        for mask in [0, 1, 0x8000, 0b1000_0100_0000_1001, 0xffff] {
-            let bits = bits_of(mask);
-            assert_eq!(mask_of(&bits), mask);
-            let mut row = [f32::NAN; LANES];
-            blend(&mut row, &bits, &numbers);
-            let mut vectors = Vec3x16::splat(Vec3::splat(9.0));
-            vectors.fill(&bits, Vec3::new(1.0, -2.0, 3.0));
-            let mut counts = [5; LANES];
-            blend_u32(&mut counts, &bits, &[8; LANES]);
-            for i in 0..LANES {
-                let set = mask >> i & 1 != 0;
-                assert!(if set { row[i] == numbers[i] } else { row[i].is_nan() });
-                assert_eq!(vectors.get(i), if set { Vec3::new(1.0, -2.0, 3.0) } else { Vec3::splat(9.0) });
-                assert_eq!(counts[i], if set { 8 } else { 5 });
-            }
-        }
     }
 }

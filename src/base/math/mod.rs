@@ -14,10 +14,7 @@ mod vector;
 pub use cone::Cone;
 pub use frame::Frame;
 pub use lane::{Lane, Mask, Mask16, f32x16};
-pub use lanes::{
-    F32x16, LANES, U32x16, Vec2x16, Vec3x16, bits_of, blend, blend_u32, first_lanes, lanes_in, lanes_with,
-    mask_of, select,
-};
+pub use lanes::{F32x16, LANES, U32x16, Vec2x16, Vec3x16, first_lanes, lanes_in, lanes_with, mask_of};
 pub use placement::Placement;
 pub use quadrature::gauss_legendre;
 pub use real::{Real, WIDTH, f32x8};

@@ -8,13 +8,14 @@
 //! in the same order, so that images do not depend on threads.
 
 use super::counts::RayCounts;
-use super::grouped::GroupedVertices;
+use super::found_light::{FoundLight, ShadowPacket};
 use super::groups::{FirstHits16, collect};
-use super::packet::{Packet, PathStage, Shadows};
+use super::packet::{Packet, PathStage};
 use super::policy::PathPolicy;
+use super::vertices::Vertices;
 use base::math::{Cone, LANES, Rgb, Vec3x16, first_lanes, lanes_in};
 use base::sampling::Samplers16;
-use embree::{Hits16, Ray, Rays16};
+use embree::{Hits16, Rays16};
 use std::mem;
 use world::light::Receivers16;
 use world::{Surfaces16, World};
@@ -27,7 +28,8 @@ pub struct Batch {
     count: usize,
     /// Lanes of each packet that hold paths at their first edge.
     first: Vec<u16>,
-    shadows: Shadows,
+    /// Segments to lights that wait for a full packet, and their number.
+    shadows: (ShadowPacket, usize),
     /// Edges that can find only the environment, until they fill a packet, and their number.
     outward: (Packet, usize),
     radiance: Vec<Rgb>,
@@ -51,6 +53,9 @@ impl Batch {
         policy: &mut R,
         counts: &mut RayCounts,
     ) -> std::vec::Drain<'_, Rgb> {
+        if !R::STOPS_AT_DIFFUSE {
+            self.packets.iter_mut().for_each(|packet| packet.stage = [PathStage::Full as u32; LANES]);
+        }
         if R::ONLY_BY_SPECULAR_LOBES {
             self.packets.iter_mut().for_each(|packet| packet.emission_throughput = Vec3x16::ZERO);
         }
@@ -106,7 +111,6 @@ impl Batch {
         counts: &mut RayCounts,
     ) {
         counts.rays += self.count as u64;
-        let coherent = are_coherent(world, 1);
         let (mut kept, mut hits) = (0, Hits16::default());
         let (mut single, mut groups) = (SingleHits::default(), Vec::with_capacity(LANES));
         for index in 0..self.packets.len() {
@@ -135,11 +139,10 @@ impl Batch {
             let first = FirstHits16 { surfaces, directions: &directions, pixel, spacing };
             collect(world, &first, grouped, &mut groups);
             let step = Step { depth: 1, max_depth, kept: &mut kept };
-            let (radiance, sheets) = (&mut self.radiance[..], step.sheets());
-            let (groups, counts) = (&mut groups[..], &mut *counts);
-            let mut vertices =
-                GroupedVertices { world, surfaces, groups, coherent, sheets, radiance, counts };
-            let going_on = vertices.scatter(&mut packet, policy);
+            let mut vertices = Vertices::in_groups(world, surfaces, &groups);
+            let mut light = FoundLight { at_once: true, ..self.light(world, &step, counts) };
+            vertices.end_chains_of_groups(&packet, &groups, policy, &mut light);
+            let going_on = packet.scatter(&vertices, policy, &mut light);
             self.go_on(world, &mut packet, going_on, step, policy, counts);
         }
         let step = Step { depth: 1, max_depth, kept: &mut kept };
@@ -194,25 +197,23 @@ impl Batch {
         policy: &mut R,
         counts: &mut RayCounts,
     ) {
-        let mut followed = if R::STOPS_AT_DIFFUSE { found & packet.followed() } else { found };
-        if R::STOPS_AT_DIFFUSE {
-            followed &= !packet.at(PathStage::Scattered) | world.specular.lanes(&surfaces.mesh);
-        }
+        let mut followed = found & packet.followed();
+        followed &= !packet.at(PathStage::Scattered) | world.specular.lanes(&surfaces.mesh);
         if followed == 0 || step.depth >= step.max_depth {
             return;
         }
-        let (coherent, sheets) = (are_coherent(world, step.depth), step.sheets());
-        let arrives = |segment: Option<&Ray>, radiance: Rgb, slot: u32| {
-            let Some(segment) = segment else {
-                self.radiance[slot as usize] += radiance;
-                return;
-            };
-            if self.shadows.push(segment, radiance, slot) {
-                self.shadows.trace(world, coherent, sheets, &mut self.radiance, counts);
-            }
-        };
-        let going_on = packet.scatter(world, surfaces, step.depth, followed, policy, arrives);
+        let mut vertices = Vertices::one_by_one(world, packet, (surfaces, followed), step.depth, policy);
+        let mut light = self.light(world, &step, counts);
+        vertices.end_chains(packet, policy, &mut light);
+        let going_on = packet.scatter(&vertices, policy, &mut light);
         self.go_on(world, packet, going_on, step, policy, counts);
+    }
+
+    /// Returns the light of the paths at the vertices of a step.
+    fn light<'a>(&'a mut self, world: &'a World, step: &Step, counts: &'a mut RayCounts) -> FoundLight<'a> {
+        let coherent = are_coherent(world, step.depth);
+        let (radiance, waiting, sheets) = (&mut self.radiance[..], &mut self.shadows, step.sheets());
+        FoundLight { world, radiance, waiting, counts, coherent, sheets, at_once: false }
     }
 
     /// Stores the paths of a packet that continue. Edges that can find only emitters are dropped or tested for
@@ -245,9 +246,8 @@ impl Batch {
         policy: &R,
         counts: &mut RayCounts,
     ) {
-        let sheets = step.sheets();
-        self.shadows.trace(world, are_coherent(world, step.depth), sheets, &mut self.radiance, counts);
-        self.trace_outward(world, sheets, policy, counts);
+        self.light(world, &step, counts).finish();
+        self.trace_outward(world, step.sheets(), policy, counts);
         self.count = *step.kept;
     }
 

@@ -7,10 +7,10 @@
 //! Errors: the mean of BSDFs seen along the mean direction differs from the mean of values. Normals may differ by an
 //! angle that is small against the sharpest lobe.
 
-use base::math::{Frame, LANES, U32x16, Vec3x16, bits_of, lanes_in, mask_of};
+use base::math::{Frame, LANES, U32x16, Vec3x16, lanes_in, mask_of};
 use glam::Vec3;
 use scene::MaterialId;
-use world::material::{LobeSet, PreparedBsdf};
+use world::material::Bsdf;
 use world::{Surfaces16, World};
 
 /// Minimum cosine between the normals of a group without sharper lobes: 5.7 degrees.
@@ -31,12 +31,8 @@ pub(crate) const MAX_HEIGHT: f32 = 0.5;
 /// Lanes that share one BSDF.
 pub(super) struct Group<'w> {
     pub lanes: u16,
-    /// All bits in its lanes, for [`base::math::blend`].
-    pub bits: U32x16,
-    /// BSDF of the whole group, seen along `out`.
-    pub bsdf: PreparedBsdf<'w>,
-    /// Lobes that chains follow.
-    pub chained: LobeSet,
+    /// BSDF of the whole group.
+    pub bsdf: Bsdf<'w>,
     /// Shading frame, on the front of the surface.
     pub frame: Frame,
     /// Shading normal on the side of the eye.
@@ -94,9 +90,7 @@ pub(super) fn collect<'w>(world: &'w World, hits: &FirstHits16, lanes: u16, grou
         let side = if front { 1.0 } else { -1.0 };
         groups.push(Group {
             lanes,
-            bits: bits_of(lanes),
-            bsdf: PreparedBsdf::new(bsdf, frame.to_local(out)),
-            chained: LobeSet::default(),
+            bsdf,
             normal: frame.normal * side,
             frame,
             out,

@@ -15,13 +15,13 @@ pub(super) struct Guided {
 }
 
 /// Vertex in one lane of a packet.
-pub(super) struct LaneVertex<'a, 'w> {
+pub(super) struct LaneVertex<'w> {
     pub lane: usize,
     pub position: Vec3,
     /// Shading normal on the side of arrival.
     pub normal: Vec3,
     pub frame: Frame,
-    pub bsdf: &'a Bsdf<'w>,
+    pub bsdf: Bsdf<'w>,
     /// Direction from which it is seen, in the frame.
     pub wo: Vec3,
 }
@@ -49,7 +49,7 @@ impl Guided {
         u: Vec2,
         samples: &mut BsdfSamples16,
     ) {
-        let LaneVertex { lane, position, normal, ref frame, bsdf, wo } = *vertex;
+        let LaneVertex { lane, position, normal, ref frame, ref bsdf, wo } = *vertex;
         let faces = world.specular.faces(position, normal);
         let towards = match u_choice < self.share {
             true => faces.towards(u_choice / self.share, u),

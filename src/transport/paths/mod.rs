@@ -5,9 +5,10 @@
 
 mod arrival;
 mod batch;
+mod chain_ends;
 mod counts;
 mod estimand;
-mod grouped;
+mod found_light;
 mod groups;
 mod guided;
 mod packet;
@@ -16,6 +17,7 @@ mod start;
 #[cfg(test)]
 mod tests;
 mod vertex;
+mod vertices;
 
 pub use batch::Batch;
 pub use counts::RayCounts;

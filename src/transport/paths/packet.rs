@@ -1,12 +1,11 @@
-//! State of paths in flight: sixteen paths, and sixteen segments to lights, as structures of arrays.
+//! State of paths in flight: sixteen paths, as a structure of arrays.
 
-use super::counts::RayCounts;
-use base::math::{Cone, F32x16, LANES, Rgb, U32x16, Vec3x16, first_lanes, lanes_in, mask_of};
+use base::math::{Cone, F32x16, LANES, Rgb, U32x16, Vec3x16, lanes_in, mask_of};
 use base::sampling::Samplers16;
-use embree::{Ray, Rays16};
-use world::{Interior, World};
+use embree::Rays16;
+use world::Interior;
 
-/// Light that a path finds, in policies with [`super::PathPolicy::STOPS_AT_DIFFUSE`].
+/// Light that a path finds; that of all paths with [`super::PathPolicy::STOPS_AT_DIFFUSE`] is `Full` from the start.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u32)]
 pub(super) enum PathStage {
@@ -53,16 +52,6 @@ pub(super) struct Packet {
     pub cones: [Cone; LANES],
     /// Interiors in which the edges start.
     pub interior: [Interior; LANES],
-}
-
-/// Light that arrives if its segment is unoccluded, collected until a packet is full.
-#[derive(Default)]
-pub(super) struct Shadows {
-    rays: Rays16,
-    /// Radiances at the eye.
-    radiance: Vec3x16,
-    slot: U32x16,
-    count: usize,
 }
 
 impl Packet {
@@ -132,39 +121,5 @@ impl Packet {
     #[inline]
     pub fn followed(&self) -> u16 {
         lanes_in(u16::MAX).filter(|i| self.throughput.get(*i) != Rgb::ZERO).fold(0, |mask, i| mask | 1 << i)
-    }
-}
-
-impl Shadows {
-    /// Adds a segment that carries `radiance` to result `slot` if it is unoccluded. Returns true if the packet is full
-    /// and must be traced before the next call.
-    #[inline]
-    pub fn push(&mut self, segment: &Ray, radiance: Rgb, slot: u32) -> bool {
-        self.rays.set(self.count, segment);
-        self.radiance.set(self.count, radiance);
-        self.slot[self.count] = slot;
-        self.count += 1;
-        self.count == LANES
-    }
-
-    /// Traces the segments and adds the light of unoccluded ones that pass at most `sheets` sheets to `results`.
-    #[inline]
-    pub fn trace(
-        &mut self,
-        world: &World,
-        coherent: bool,
-        sheets: u32,
-        results: &mut [Rgb],
-        counts: &mut RayCounts,
-    ) {
-        counts.shadow_rays += self.count as u64;
-        let occluded = world.accel.occluded16(&self.rays, first_lanes(self.count), coherent);
-        let free = first_lanes(self.count) & !occluded;
-        let attenuate = |lane, share| self.radiance.set(lane, self.radiance.get(lane) * share);
-        world.transmittance16(&self.rays, free, sheets, attenuate);
-        for lane in lanes_in(free) {
-            results[self.slot[lane] as usize] += self.radiance.get(lane);
-        }
-        self.count = 0;
     }
 }

@@ -4,9 +4,7 @@ use super::direct::{DirectSample, DirectSamples16};
 use super::emitters::Emitters;
 use super::receivers::Receivers16;
 use super::triangles::Triangles16;
-use base::math::{
-    F32x16, LANES, Rgb, U32x16, Vec2x16, bits_of, blend, blend_u32, lanes_in, lanes_with, mask_of,
-};
+use base::math::{F32x16, LANES, Mask16, Rgb, U32x16, V3, Vec2x16, lanes_in, lanes_with, mask_of};
 use glam::Vec3;
 
 impl Emitters {
@@ -121,18 +119,18 @@ impl Emitters {
         let Some(environment) = &self.environment else { return };
         let sky = at.learned.and_then(|learned| learned.sky.as_ref()).map(|sky| (sky, at.position));
         let found = environment.sample16(u, wanted, sky);
-        let bits = bits_of(wanted);
-        samples.direction.blend(&bits, &found.direction);
-        samples.radiance.blend(&bits, &found.radiance);
-        samples.normal.fill(&bits, Vec3::ZERO);
-        blend(&mut samples.distance, &bits, &[f32::INFINITY; LANES]);
+        let mask = Mask16::of(wanted);
+        samples.direction.put(mask, found.direction.load());
+        samples.radiance.put(mask, found.radiance.load());
+        samples.normal.put(mask, V3::splat(Vec3::ZERO));
+        mask.put(&mut samples.distance, &[f32::INFINITY; LANES]);
         let (mut pdf, mut useful) = ([0.0; LANES], [0; LANES]);
         for i in 0..LANES {
             pdf[i] = choice[i] * found.pdf[i];
             useful[i] = u32::from(found.pdf[i] > 0.0);
         }
-        blend(&mut samples.pdf, &bits, &pdf);
-        blend_u32(&mut samples.useful, &bits, &useful);
-        blend_u32(&mut samples.delta, &bits, &[0; LANES]);
+        mask.put(&mut samples.pdf, &pdf);
+        mask.put_u32(&mut samples.useful, &useful);
+        mask.put_u32(&mut samples.delta, &[0; LANES]);
     }
 }

@@ -4,7 +4,7 @@
 
 use super::area::{AreaLight, TriangleShape};
 use super::direct::DirectSamples16;
-use base::math::{F32x16, LANES, U32x16, Vec2x16, Vec3x16, bits_of, blend, blend_u32, lanes_in, lanes_with};
+use base::math::{F32x16, LANES, Mask16, U32x16, V3, Vec2x16, Vec3x16, lanes_in, lanes_with};
 use base::sampling::uniform_triangle;
 use glam::Vec2;
 
@@ -36,13 +36,13 @@ impl Triangles16 {
             return;
         }
         let (index, rest) = light.choose_triangles16(&u.x);
-        let bits = bits_of(lanes);
-        blend_u32(&mut self.index, &bits, &index);
-        blend(&mut self.barycentric.x, &bits, &rest);
-        blend(&mut self.barycentric.y, &bits, &u.y);
-        blend(&mut self.area, &bits, &[light.area; LANES]);
-        blend_u32(&mut self.two_sided, &bits, &[u32::from(light.emission.two_sided); LANES]);
-        self.radiance.fill(&bits, light.emission.radiance);
+        let mask = Mask16::of(lanes);
+        mask.put_u32(&mut self.index, &index);
+        mask.put(&mut self.barycentric.x, &rest);
+        mask.put(&mut self.barycentric.y, &u.y);
+        mask.put(&mut self.area, &[light.area; LANES]);
+        mask.put_u32(&mut self.two_sided, &[u32::from(light.emission.two_sided); LANES]);
+        self.radiance.put(mask, V3::splat(light.emission.radiance));
         let mut left = lanes;
         while left != 0 {
             let triangle = index[left.trailing_zeros() as usize];
@@ -54,11 +54,11 @@ impl Triangles16 {
                 self.edges = [Vec3x16::splat(e1), Vec3x16::splat(e2)];
                 continue;
             }
-            let bits = bits_of(here);
-            self.corner.fill(&bits, corner);
-            self.edges[0].fill(&bits, e1);
-            self.edges[1].fill(&bits, e2);
-            self.normal.fill(&bits, normal);
+            let mask = Mask16::of(here);
+            self.corner.put(mask, V3::splat(corner));
+            self.edges[0].put(mask, V3::splat(e1));
+            self.edges[1].put(mask, V3::splat(e2));
+            self.normal.put(mask, V3::splat(normal));
         }
     }
 

@@ -8,7 +8,7 @@
 //!
 //! Files use only files before them in this order: `microfacet`, `fresnel`, `table` and `albedo`; `means`; `base` and
 //! `lobe` (one file per lobe); `model` and `lobe_set` (data); `seen`, `bsdf`, `sample`, `bound`, `packet`,
-//! `prepared`, `mean` and `straight` (evaluation); `colours`, `layers` and `build` (from the scene's materials);
+//! `mean` and `straight` (evaluation); `colours`, `layers` and `build` (from the scene's materials);
 //! `materials` (lookup).
 //!
 //! All directions are in the local shading frame (z = shading normal), point away from the surface and have unit
@@ -31,7 +31,6 @@ mod microfacet;
 mod model;
 mod packed;
 mod packet;
-mod prepared;
 mod principled;
 mod roughness;
 mod sample;
@@ -48,7 +47,6 @@ pub use mean::MeanBsdf;
 pub use model::Bsdf;
 pub use packed::PackedBsdf;
 pub use packet::{BsdfSamples16, Bsdfs16};
-pub use prepared::PreparedBsdf;
 pub use straight::LastStraight;
 
 #[cfg(test)]

@@ -1,6 +1,7 @@
 //! Materials at sixteen points at once: lanes of one model are evaluated together.
 
 use super::lobe::{BsdfSample, MAX_LOBES};
+use super::lobe_set::LobeSet;
 use super::model::{Bsdf, Model};
 use super::seen::{Sampled, Seen};
 use base::math::{F32x16, LANES, Lane, Mask16, Rgb, U32x16, V3, Vec2x16, Vec3x16, f32x16, lanes_in, mask_of};
@@ -42,7 +43,7 @@ pub struct BsdfSamples16 {
     /// Not zero if the path continues.
     pub goes_on: U32x16,
     /// Not zero if the path continues straight through the surface.
-    pub(super) straight: U32x16,
+    straight: U32x16,
 }
 
 impl<'m> Bsdfs16<'m> {
@@ -143,6 +144,21 @@ impl<'m> Bsdfs16<'m> {
         (value.into(), pdf.to_array())
     }
 
+    /// Returns [`Bsdf::eval_lobes`] in the lanes of `wanted`, for a set of lobes in each; 0 in other lanes.
+    pub fn eval_lobes(&self, lobes: &[LobeSet; LANES], wi: &Vec3x16, wanted: u16) -> Vec3x16 {
+        let (turned, mut values) = (self.turned(wi), Vec3x16::ZERO);
+        let mut left = self.layered & wanted;
+        while left != 0 {
+            let (set, alike) = (lobes[left.trailing_zeros() as usize], self.take_alike(&mut left));
+            let lanes =
+                lanes_in(alike).filter(|lane| lobes[*lane] == set).fold(0, |all, lane| all | 1 << lane);
+            left |= alike & !lanes;
+            let seen = self.seen(lanes);
+            values.put(Mask16::of(lanes), seen.eval_lobes(set, &seen.facet(turned)));
+        }
+        values
+    }
+
     /// Returns [`Bsdf::sample`] in the lanes of `wanted`; other lanes are undefined.
     #[inline]
     pub fn sample(&self, u_lobe: &F32x16, u: &Vec2x16, wanted: u16) -> BsdfSamples16 {
@@ -224,7 +240,7 @@ impl<'m> Bsdfs16<'m> {
 impl BsdfSamples16 {
     /// Stores samples whose directions are turned to the side of the normal.
     #[inline(always)]
-    pub(super) fn new(sampled: &Sampled<f32x16>, side: f32x16) -> BsdfSamples16 {
+    fn new(sampled: &Sampled<f32x16>, side: f32x16) -> BsdfSamples16 {
         let V3 { x, y, z } = sampled.wi;
         let flags = |mask: Mask16| {
             let (mut row, bits) = ([0; LANES], mask.bits());
@@ -248,15 +264,10 @@ impl BsdfSamples16 {
     fn put(&mut self, mask: Mask16, other: &BsdfSamples16) {
         self.wi.put(mask, other.wi.load());
         self.weight.put(mask, other.weight.load());
-        let put = |row: &mut F32x16, values: &F32x16| {
-            *row = f32x16::pick(mask, f32x16::new(*values), f32x16::new(*row)).to_array();
-        };
-        put(&mut self.pdf, &other.pdf);
-        put(&mut self.eta, &other.eta);
-        for lane in lanes_in(mask.bits()) {
-            self.goes_on[lane] = other.goes_on[lane];
-            self.straight[lane] = other.straight[lane];
-        }
+        mask.put(&mut self.pdf, &other.pdf);
+        mask.put(&mut self.eta, &other.eta);
+        mask.put_u32(&mut self.goes_on, &other.goes_on);
+        mask.put_u32(&mut self.straight, &other.straight);
     }
 
     /// Sets a lane to a sample, or ends the path of the lane.

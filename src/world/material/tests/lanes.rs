@@ -1,7 +1,7 @@
-//! A BSDF seen from one direction gives the values, densities and samples of the scalar functions in every lane.
+//! Sixteen BSDFs have the values, densities and samples of the scalar functions in every lane.
 
 use super::*;
-use ::base::math::{F32x16, LANES, Vec2x16, Vec3x16};
+use ::base::math::{F32x16, LANES, Vec2x16, Vec3x16, lanes_in};
 
 /// Returns materials of every kind: smooth ones, delta lobes, gaps, both kinds of glass and thin sheets. All are
 /// one-sided and two-sided.
@@ -82,13 +82,12 @@ fn lanes_have_the_scalar_values_and_densities() {
         let mut random = Random(5);
         with_bsdf(&material, |bsdf| {
             for wo in outgoing(&mut random) {
-                let prepared = PreparedBsdf::new(bsdf, wo);
-                assert!(prepared.wo() == wo && prepared.is_lambert() == bsdf.is_lambert());
+                let packet = Bsdfs16::new(Vec3x16::splat(wo), |_| bsdf);
                 for _ in 0..20 {
                     let wi = incident(wo, &mut random);
-                    let (values, pdfs) = prepared.eval_pdf16(&wi);
-                    let sharp = prepared.eval_lobes16(bsdf.sharp_lobes(), &wi);
-                    let rough = prepared.eval_lobes16(bsdf.rough_lobes(), &wi);
+                    let (values, pdfs) = packet.eval_pdf(&wi, !0);
+                    let sharp = packet.eval_lobes(&[bsdf.sharp_lobes(); LANES], &wi, !0);
+                    let rough = packet.eval_lobes(&[bsdf.rough_lobes(); LANES], &wi, !0);
                     for lane in 0..LANES {
                         let wi = wi.get(lane);
                         let (value, pdf) = bsdf.eval_pdf(wo, wi);
@@ -118,16 +117,15 @@ fn lanes_are_sampled_as_single_directions_are() {
         let mut random = Random(8);
         with_bsdf(&material, |bsdf| {
             for wo in outgoing(&mut random) {
-                let prepared = PreparedBsdf::new(bsdf, wo);
+                let packet = Bsdfs16::new(Vec3x16::splat(wo), |_| bsdf);
                 for round in 0..20u16 {
                     let wanted = if round < 10 { !0 } else { round.wrapping_mul(12_345) };
                     let u_lobe: F32x16 = std::array::from_fn(|_| random.next());
                     let mut u = Vec2x16::default();
                     (0..LANES).for_each(|lane| u.set(lane, random.next_2d()));
-                    let samples = prepared.sample16(&u_lobe, &u, wanted);
-                    for lane in 0..LANES {
+                    let samples = packet.sample(&u_lobe, &u, wanted);
+                    for lane in lanes_in(wanted) {
                         let exact = bsdf.sample(wo, u_lobe[lane], u.get(lane));
-                        let exact = exact.filter(|_| wanted >> lane & 1 != 0);
                         let name = &material.name;
                         assert_eq!(samples.goes_on[lane] != 0, exact.is_some(), "{name} {wo}: {exact:?}");
                         let Some(exact) = exact else { continue };
