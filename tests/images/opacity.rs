@@ -2,11 +2,10 @@
 
 use crate::kit::*;
 use crate::oracle::{assert_means_within, mean};
-use crate::presets::direct_only;
 use glam::{DVec3, Vec2, Vec3};
 use lightsplat::math::Rgb;
-use lightsplat::method::{Renderer, path};
-use lightsplat::scene::{DeltaLight, Environment, Filter, Material, Share, Texture};
+use lightsplat::method::path;
+use lightsplat::scene::{DeltaLight, Environment, Filter, Material, Scene, Share, Texture};
 
 /// Loads the first of some files, all of them in one folder.
 fn files(files: &[(&str, &str)]) -> WorldAndView {
@@ -90,29 +89,65 @@ fn seen_masks_are_sharp_and_blends_are_smooth() {
     }
 }
 
+/// Returns what an eye over the middle of a floor sees that lies under a horizontal mask.
+fn under_a_mask(height: f32, max_depth: u32, add_light: impl Fn(&mut Scene)) -> WorldAndView {
+    let mut scene = scene(camera(Vec3::new(0.0, height, 0.01), Vec3::ZERO, 1e-3), [8, 8]);
+    scene.max_depth = Some(max_depth);
+    let floor = add_material(&mut scene, diffuse(Rgb::splat(0.5)));
+    let mask = Material { opacity: Some(Share::Constant(0.5)), two_sided: true, ..diffuse(Rgb::ZERO) };
+    let mask = add_material(&mut scene, mask);
+    for (y, material) in [(0.0, floor), (1.0, mask)] {
+        scene.meshes.push(quad(Vec3::new(-5.0, y, -5.0), Vec3::Z * 10.0, Vec3::X * 10.0, material));
+    }
+    add_light(&mut scene);
+    world(scene)
+}
+
 #[test]
 fn masks_that_light_passes_count_as_edges() {
-    let methods: [(&str, Box<dyn Renderer>); 2] = [
-        ("path", Box::new(path::Settings { spp: 256, ..Default::default() })),
-        ("cache", Box::new(direct_only())),
-    ];
+    let methods = small_methods();
     // The eye is below the mask or above it. Light from above has one edge less to the eye below.
     for (height, max_depth, expected) in [(0.5, 2, 0.0), (0.5, 3, 0.5), (2.0, 3, 0.0), (2.0, 4, 0.25)] {
-        let mut scene = scene(camera(Vec3::new(0.0, height, 0.01), Vec3::ZERO, 1e-3), [8, 8]);
-        scene.max_depth = Some(max_depth);
-        let floor = add_material(&mut scene, diffuse(Rgb::splat(0.5)));
-        let mask = Material { opacity: Some(Share::Constant(0.5)), two_sided: true, ..diffuse(Rgb::ZERO) };
-        let mask = add_material(&mut scene, mask);
-        for (y, material) in [(0.0, floor), (1.0, mask)] {
-            scene.meshes.push(quad(Vec3::new(-5.0, y, -5.0), Vec3::Z * 10.0, Vec3::X * 10.0, material));
-        }
         let irradiance = Rgb::splat(2.0 * std::f32::consts::PI);
-        scene.lights.push(DeltaLight::Directional { direction: Vec3::NEG_Y, irradiance });
-        let world = world(scene);
+        let world = under_a_mask(height, max_depth, |scene| {
+            scene.lights.push(DeltaLight::Directional { direction: Vec3::NEG_Y, irradiance });
+        });
         for (name, method) in &methods {
-            let found = mean(&image(&world, &**method));
+            let found = mean(&image(&world, method.renderer()));
             let what = format!("{name}, at most {max_depth} edges, eye at {height}");
-            assert!((found - DVec3::splat(expected)).abs().max_element() < 0.02, "{what}: {found}");
+            assert!((found - DVec3::splat(expected)).abs().max_element() < 0.04, "{what}: {found}");
+        }
+    }
+}
+
+#[test]
+fn masks_that_indirect_light_passes_count_as_edges() {
+    let methods = small_methods();
+    for (height, max_depth) in [(0.5, 3), (0.5, 4), (2.0, 4), (2.0, 5)] {
+        // Light of a ceiling that a lamp over the mask lights.
+        let world = under_a_mask(height, max_depth, |scene| {
+            let ceiling = add_material(scene, diffuse(Rgb::ONE));
+            let corner = Vec3::new(-5.0, 4.0, -5.0);
+            scene.meshes.push(quad(corner, Vec3::X * 10.0, Vec3::Z * 10.0, ceiling));
+            let (position, direction) = (Vec3::Y * 3.0, Vec3::Y);
+            let [inner_angle, outer_angle] = [0.7, 0.8];
+            let intensity = Rgb::splat(100.0);
+            scene.lights.push(DeltaLight::Spot {
+                position,
+                direction,
+                intensity,
+                inner_angle,
+                outer_angle,
+                image: None,
+            });
+        });
+        let expected = mean(&image(&world, &path::Settings { spp: 1024, ..Default::default() }));
+        assert_eq!(expected == DVec3::ZERO, max_depth == if height < 1.0 { 3 } else { 4 });
+        for (name, method) in &methods {
+            let found = mean(&image(&world, method.renderer()));
+            let what = format!("{name}, at most {max_depth} edges, eye at {height}");
+            let error = (found - expected).abs().max_element();
+            assert!(error <= 0.1 * expected.max_element(), "{what}: {found}, not {expected}");
         }
     }
 }

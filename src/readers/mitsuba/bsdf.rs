@@ -218,7 +218,11 @@ impl Converter<'_> {
         }
         if !applied.is_empty() {
             let what = format!("{} of {} are not supported", applied.join(" and "), bsdf.plugin);
-            self.log.note(&bsdf.place, what, "the relief is up to 1 % darker or brighter");
+            self.log.note(
+                &bsdf.place,
+                what,
+                "where the relief leans away from the viewer, it is up to 15 % darker or brighter",
+            );
         }
         Ok(())
     }

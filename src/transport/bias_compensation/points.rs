@@ -98,7 +98,7 @@ impl Compensator {
         if !lacking.iter().any(|&lacking| lacking > NEGLIGIBLE * irradiance) {
             return None;
         }
-        let light = NearLight { origin, places: self.gather(c, irradiance, seed) };
+        let light = NearLight { origin, places: self.gather(c, receivers, irradiance, seed) };
         self.add_met(c, &light, receivers, sum);
         Some(light)
     }
@@ -148,7 +148,13 @@ impl Compensator {
 
     /// Gathers irradiance at some of the surfaces met, chosen in proportion to their weights, by a cut or by samples of
     /// this `seed`. Its error is relative to the points' irradiance `baseline`, to which it is added.
-    fn gather(&mut self, c: &Compensation, baseline: f32, seed: Option<u32>) -> Vec<(SurfacePoint, Rgb)> {
+    fn gather(
+        &mut self,
+        c: &Compensation,
+        receivers: &ReceiverPacket,
+        baseline: f32,
+        seed: Option<u32>,
+    ) -> Vec<(SurfacePoint, Rgb)> {
         // Surfaces of one mesh are neighbours in this order.
         let mut order: Vec<u32> = (0..self.met.len() as u32).collect();
         order.sort_by_key(|&i| (self.met[i as usize].1.surface.mesh, self.met[i as usize].0));
@@ -156,24 +162,25 @@ impl Compensator {
         if !(total > 0.0) {
             return Vec::new();
         }
-        let met = |i: u32| &self.met[i as usize].1;
+        let met = |i: u32| &self.met[i as usize];
         let mut places = Vec::with_capacity(LANES);
         let mut of_places = Vec::with_capacity(LANES);
-        choose_evenly(order.iter().map(|&i| luminance(met(i).weight)), total, LANES, |i, _| {
-            let near = met(order[i]);
+        choose_evenly(order.iter().map(|&i| luminance(met(i).1.weight)), total, LANES, |i, _| {
+            let (lane, near) = met(order[i]);
             let (position, geometric_normal) = (near.surface.position, near.surface.normal);
             places.push((SurfacePoint { position, normal: near.normal, geometric_normal }, Rgb::ZERO));
-            of_places.push(*near);
+            of_places.push((*near, receivers.get(*lane).edges().saturating_sub(1)));
         });
-        let receiver = |(p, _): &(SurfacePoint, Rgb)| {
+        let receiver = |((p, _), (_, edges)): (&(SurfacePoint, Rgb), &(NearSurface, u16))| {
             Receiver::irradiance(p.position, p.geometric_normal, &Frame::from_normal(p.normal))
                 .with_baseline(baseline)
+                .with_edges(*edges)
         };
-        self.receivers.set(places.iter().map(receiver));
+        self.receivers.set(places.iter().zip(&of_places).map(receiver));
         let settings =
             CutSettings { epsilon: EPSILON, max_cut: MAX_CUT, clamp: Some(CLAMP), ..CutSettings::default() };
         // Lobes need the clusters of a cut.
-        let seed = seed.filter(|_| of_places.iter().all(|near| !near.lack.by_lobes));
+        let seed = seed.filter(|_| of_places.iter().all(|(near, _)| !near.lack.by_lobes));
         let samples = seed.and_then(|seed| {
             let settings = SampledSettings { cut: &settings, samples: &SAMPLES, seed };
             self.sampled.gather(&c.transfer, c.world, &self.receivers, &settings)
@@ -185,7 +192,7 @@ impl Compensator {
             return places;
         }
         let cut = self.packet.gather(&c.transfer, c.world, &self.receivers, &settings);
-        for (lane, ((_, irradiance), near)) in places.iter_mut().zip(&of_places).enumerate() {
+        for (lane, ((_, irradiance), (near, _))) in places.iter_mut().zip(&of_places).enumerate() {
             let gathered = limited(c, &cut, near, lane, baseline);
             *irradiance = if gathered.is_finite() { gathered } else { Rgb::ZERO };
         }

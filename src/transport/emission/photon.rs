@@ -43,6 +43,8 @@ pub struct PhotonHit<'a> {
     pub wi: Vec3,
     /// Unit shading normal on the side where the light arrives.
     pub shading_normal: Vec3,
+    /// Number of edges from the emitter to the surface.
+    pub edges: u32,
 }
 
 /// Settings of photon tracing.

@@ -49,14 +49,14 @@ impl PathTracer<'_, '_> {
         let (world, max_edges) = (self.emitter.world, self.max_edges);
         let walk = Walk { world, carried: Carried::Flux, max_edges, by_delta: false };
         walk.follow(ray, flux, sampler, |at, _| {
-            let WalkVertex { surface, bsdf, back, wo, weight: flux, .. } = *at;
+            let WalkVertex { surface, bsdf, back, wo, weight: flux, edges, .. } = *at;
             let albedo = bsdf.diffuse_albedo(wo);
             if albedo != Rgb::ZERO {
                 let normal: Vec3 =
                     if surface.normal.dot(back) > 0.0 { surface.normal } else { -surface.normal };
                 let photon = Photon { position: surface.position, normal, towards_light: back, flux, albedo };
                 let shading_normal = surface.frame.normal * wo.z.signum();
-                met(&PhotonHit { photon, bsdf, wi: wo, shading_normal });
+                met(&PhotonHit { photon, bsdf, wi: wo, shading_normal, edges });
             }
             ControlFlow::Continue(())
         })

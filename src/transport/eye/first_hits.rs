@@ -19,6 +19,8 @@ pub(super) struct FirstHits<'a, 'w> {
     pub lookups: CausticLookups,
     /// Distance between neighbouring points over the distance from the eye, on surfaces that face it.
     pub spacing_by_distance: f32,
+    /// Maximum number of edges of a path; `u32::MAX` if light passes no sheets.
+    pub max_depth: u32,
     /// True if first hits are shaded in groups.
     pub in_groups: bool,
     pub edges: ScatteredEdges,
@@ -82,7 +84,8 @@ impl<'w> PathPolicy<'w> for FirstHits<'_, 'w> {
 
     #[inline]
     fn end(&mut self, end: &ChainEnd<'w>) {
-        if let Some(point) = MergedPoint::new(end, self.spacing_by_distance * end.distance) {
+        let edges = self.max_depth.saturating_sub(end.depth);
+        if let Some(point) = MergedPoint::new(end, self.spacing_by_distance * end.distance, edges) {
             self.order.push((end.path, self.found.len() as u32));
             self.found.push(point);
         }

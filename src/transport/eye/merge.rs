@@ -34,10 +34,10 @@ pub struct MergedPoint<'w> {
 
 impl<'w> MergedPoint<'w> {
     /// Returns the point of one first hit, or `None` if it cannot be lit. `spacing` is the distance to the point of
-    /// the next pixel.
+    /// the next pixel. Light may take at most `edges` edges to the point.
     #[inline]
-    pub fn new(end: &ChainEnd<'w>, spacing: f32) -> Option<MergedPoint<'w>> {
-        let (geometry, surface) = shading_point(&end.surface, end.bsdf, end.out, spacing)?;
+    pub fn new(end: &ChainEnd<'w>, spacing: f32, edges: u32) -> Option<MergedPoint<'w>> {
+        let (geometry, surface) = shading_point(&end.surface, end.bsdf, end.out, spacing, edges)?;
         let point = MergedPoint {
             geometry,
             surface,
@@ -178,7 +178,7 @@ mod tests {
     }
 
     fn point<'w>(end: &ChainEnd<'w>) -> MergedPoint<'w> {
-        MergedPoint::new(end, SPACING).expect("a finite end")
+        MergedPoint::new(end, SPACING, 1).expect("a finite end")
     }
 
     fn merged<'w>(ends: &[ChainEnd<'w>], draw: f32) -> Vec<MergedPoint<'w>> {
@@ -268,7 +268,7 @@ mod tests {
             ChainEnd { throughput: Rgb::new(0.0, f32::NAN, 0.0), ..here },
             ChainEnd { distance: f32::NAN, ..here },
         ] {
-            assert!(MergedPoint::new(&bad, SPACING * bad.distance).is_none());
+            assert!(MergedPoint::new(&bad, SPACING * bad.distance, 1).is_none());
         }
     }
 

@@ -41,7 +41,7 @@ pub use features::{Averaging, EvenSurface, Feature, Features, SeenPixels, Unknow
 pub use guides::{FirstSurfaces, FullPaths, Guide, PackedGuide, PackedGuides};
 pub use pass::EyePass;
 pub use pilot::{ByPhotons, EyePilot};
-pub use points::{PointGeometry, ShadingPoints, VisibilitySamples};
+pub use points::{PointGeometry, ShadingPoints, VisibilitySamples, edge_class};
 pub use rays::{EyeRays, EyeSettings, TILE, VisibleSurfaces};
 pub use seen::FeatureSettings;
 pub use settled::Settled;

@@ -23,18 +23,31 @@ pub struct PointGeometry {
     pub spacing: f32,
     /// Unit shading normal on the side of the eye.
     pub normal: Vec3,
-    /// Coat that light has to pass to reach the base (see [`Bsdf::coat`]); 0 without a coat.
-    pub coat: u32,
+    /// Coat that light has to pass to reach the base (see [`Bsdf::coat`]); 0 without a coat. Coats beyond the largest
+    /// number count as one.
+    pub coat: u16,
+    /// Maximum number of edges that light may take to the point; `u16::MAX` if light passes no sheets.
+    pub edges: u16,
+}
+
+/// Number of edges from which on a limit hardly matters.
+const MANY_EDGES: u16 = 16;
+
+/// Returns the class of points to which light may take `edges` edges. Points of one class may share light.
+#[inline]
+pub fn edge_class(edges: u16) -> u16 {
+    edges.min(MANY_EDGES)
 }
 
 /// Returns the shading point at a surface seen along `out`, or `None` if it cannot be lit. `spacing` is the distance
-/// to the next ray on a surface that faces the eye.
+/// to the next ray on a surface that faces the eye. Light may take at most `edges` edges to the point.
 #[inline]
 pub fn shading_point<'w>(
     surface: &Surface,
     bsdf: Bsdf<'w>,
     out: Vec3,
     spacing: f32,
+    edges: u32,
 ) -> Option<(PointGeometry, PointSurface<'w>)> {
     let front = surface.frame.normal.dot(out) > 0.0;
     if !front && !bsdf.two_sided() {
@@ -43,7 +56,8 @@ pub fn shading_point<'w>(
     let normal = if front { surface.frame.normal } else { -surface.frame.normal };
     // Foreshortening is limited, so that grazing samples do not stand for whole floors.
     let spacing = spacing / normal.dot(out).max(0.05).sqrt();
-    let geometry = PointGeometry { position: surface.position, spacing, normal, coat: bsdf.coat() };
+    let [coat, edges] = [bsdf.coat(), edges].map(|number| u16::try_from(number).unwrap_or(u16::MAX));
+    let geometry = PointGeometry { position: surface.position, spacing, normal, coat, edges };
     let finite = surface.position.is_finite() && spacing.is_finite();
     finite.then_some((geometry, PointSurface { bsdf, geometric_normal: surface.normal, out }))
 }

@@ -1,6 +1,6 @@
 //! Single eye rays: their random numbers, positions in pixels, and the surfaces that they make visible.
 
-use super::chain::{ChainTracer, EdgeEnd, Follow};
+use super::chain::{ChainTracer, ChainVertex, EdgeEnd, Follow};
 use super::counts::EyeCounts;
 use super::guides::PackedGuide;
 use super::points::{ShadingPoints, VisibilitySample, shading_point};
@@ -86,11 +86,13 @@ impl<'a, 'w> EyeRays<'a, 'w> {
         let ray = self.world.behind_hidden(self.view.sample_ray(film_pixel, jitter, seed, sample));
         let VisibleSurfaces { points, visibility, chains: counts, .. } = found;
         let visit = |met: EdgeEnd<'w>| {
-            if let EdgeEnd::Surface(vertex) = met
-                && vertex.bsdf.has_smooth()
-                && vertex.depth < max_depth
+            let EdgeEnd::Surface(vertex) = met else { return };
+            let ChainVertex { surface, bsdf, out, depth, distance, .. } = vertex;
+            let edges = if self.world.has_sheets() { max_depth.saturating_sub(depth) } else { u32::MAX };
+            if bsdf.has_smooth()
+                && depth < max_depth
                 && let Some((geometry, surface)) =
-                    shading_point(&vertex.surface, vertex.bsdf, vertex.out, self.angle * vertex.distance)
+                    shading_point(&surface, bsdf, out, self.angle * distance, edges)
             {
                 points.geometry.push(geometry);
                 points.surfaces.push(&surface);

@@ -146,12 +146,14 @@ impl<'a, 'w> Tracer<'a, 'w> {
     pub(super) fn workspace<'b>(&'b self, learned: Option<&'b Learned>) -> TracerWorkspace<'b, 'w> {
         let spacing_by_distance = SPACING * self.view.pixel_angle();
         let Tracer { direct, caustics, edges, light_samples, .. } = *self;
+        let max_depth = if self.world.has_sheets() { self.settings.max_depth } else { u32::MAX };
         let ends = FirstHits {
             direct,
             learned,
             caustics,
             lookups: CausticLookups::default(),
             spacing_by_distance,
+            max_depth,
             in_groups: false,
             edges,
             light_samples,

@@ -4,7 +4,7 @@ use super::{CutSettings, PacketVisibility, RayVisibility, Receiver, ReceiverPack
 use crate::lights::{
     Family, LightNode, LightTrees, LobeProfile, Origin, Profiles, SpotProfile, Vpl, VplKind, VplSet,
 };
-use base::math::{Frame, Rgb, Vec3x16, lanes_in};
+use base::math::{Frame, LANES, Rgb, Vec3x16, lanes_in};
 use base::progress::Control;
 use base::sampling::{hash, uniform_sphere};
 use embree::Rays16;
@@ -160,7 +160,7 @@ impl PacketVisibility for Ball {
 }
 
 impl RayVisibility for Ball {
-    fn arriving16(&self, rays: &Rays16, count: usize, _: &mut Vec3x16) -> u16 {
+    fn arriving16(&self, rays: &Rays16, count: usize, _: &[Option<u32>; LANES], _: &mut Vec3x16) -> u16 {
         let is_free = |&lane: &usize| {
             let ray = rays.get(lane);
             let along = (self.centre - ray.origin).dot(ray.direction) / ray.direction.length_squared();

@@ -20,6 +20,8 @@ pub struct Receiver<'m> {
     wo: Vec3,
     material: ReceiverMaterial<'m>,
     baseline_luminance: f32,
+    /// Maximum number of edges that light may take to the point.
+    edges: u16,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -52,14 +54,15 @@ impl<'m> Receiver<'m> {
             None => ReceiverMaterial::General(bsdf),
         };
         let mirror = Frame::from_normal(frame.to_world(Vec3::new(-wo.x, -wo.y, wo.z)));
-        Receiver { position, geometric_normal, frame, mirror, wo, material, baseline_luminance: 0.0 }
+        let (baseline_luminance, edges) = (0.0, u16::MAX);
+        Receiver { position, geometric_normal, frame, mirror, wo, material, baseline_luminance, edges }
     }
 
     /// Creates a receiver of irradiance on the side of the frame's z axis: a surface that reflects π times the physical
     /// maximum.
     pub fn irradiance(position: Vec3, geometric_normal: Vec3, frame: &Frame) -> Receiver<'static> {
         let material = ReceiverMaterial::Lambert(Rgb::ONE);
-        let baseline_luminance = 0.0;
+        let (baseline_luminance, edges) = (0.0, u16::MAX);
         Receiver {
             position,
             geometric_normal,
@@ -68,12 +71,29 @@ impl<'m> Receiver<'m> {
             wo: Vec3::Z,
             material,
             baseline_luminance,
+            edges,
         }
     }
 
     /// Returns the receiver with errors judged relative to this additional luminance of reflected light.
     pub fn with_baseline(self, baseline_luminance: f32) -> Self {
         Receiver { baseline_luminance, ..self }
+    }
+
+    /// Returns the receiver with a limit of the number of edges that light may take to it.
+    pub fn with_edges(self, edges: u16) -> Self {
+        Receiver { edges, ..self }
+    }
+
+    /// Maximum number of edges that light may take to the point.
+    pub fn edges(&self) -> u16 {
+        self.edges
+    }
+
+    /// Returns the maximum number of sheets that light may pass which has come along `before` edges to a VPL; `None`
+    /// if it may not even arrive straight.
+    pub fn sheets(&self, before: u8) -> Option<u32> {
+        u32::from(self.edges).checked_sub(u32::from(before) + 1)
     }
 
     /// BRDF of a Lambertian material; `None` for other materials.

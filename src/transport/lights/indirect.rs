@@ -3,8 +3,8 @@
 //! Paper: Keller, *Instant Radiosity*, 1997; Herzog et al. 2009, section 3: the first hit's reflected light
 //! is already indirect, and moderately glossy reflection counts as diffuse where light is deposited.
 //! Deviations: only weak lobes, as plastics have, count as diffuse. Metals have VPLs that radiate by their lobes. If
-//! the number of edges is limited, the receiver counts as seen directly: behind mirrors and glass, light may use as
-//! many further edges as the eye's path has.
+//! the number of edges is limited and light passes no sheets, the receiver counts as seen directly: behind mirrors and
+//! glass, light may use as many further edges as the eye's path has.
 
 use super::{LightPassSettings, LobeProfile, Origin, Vpl, VplKind, VplSet};
 use crate::emission::{PhotonCounts, PhotonHit, PhotonSettings, trace_in_parts};
@@ -30,6 +30,8 @@ pub struct IndirectVpls {
 /// VPLs of one photon. Intensities are those of a single path.
 struct PhotonVpls {
     diffuse: (Vpl, Rgb),
+    /// Number of edges of the photon's path, at most 255.
+    edges: u8,
     /// Lobes and their intensities; `None` if there are none.
     lobes: Option<Box<[(LobeProfile, Rgb)]>>,
 }
@@ -54,7 +56,8 @@ impl PhotonVpls {
             .collect();
         let intensity = photon.flux * albedo.max(Rgb::ZERO) * FRAC_1_PI;
         let diffuse = (Vpl::oriented(photon.position, photon.normal), intensity);
-        PhotonVpls { diffuse, lobes: (!lobes.is_empty()).then_some(lobes) }
+        let edges = u8::try_from(hit.edges).unwrap_or(u8::MAX);
+        PhotonVpls { diffuse, edges, lobes: (!lobes.is_empty()).then_some(lobes) }
     }
 
     /// Position of the lobes' VPLs.
@@ -87,8 +90,8 @@ pub fn indirect_vpls(
     diffuse.reserve(parts.iter().map(|part| part.diffuse.len()).sum());
     for part in parts {
         diffuse.append(part.diffuse);
-        for (place, profile, intensity) in part.lobed {
-            lobed.push(Vpl::lobed(place, lobes.len() as u32), intensity);
+        for (edges, place, profile, intensity) in part.lobed {
+            lobed.push_behind(edges, Vpl::lobed(place, lobes.len() as u32), intensity);
             lobes.push(profile);
         }
     }
@@ -98,8 +101,8 @@ pub fn indirect_vpls(
 /// VPLs of some photons. Intensities are shares of all paths.
 struct PartialVpls {
     diffuse: VplSet,
-    /// Positions, lobes and intensities.
-    lobed: Vec<(Vec3, LobeProfile, Rgb)>,
+    /// Numbers of edges, positions, lobes and intensities.
+    lobed: Vec<(u8, Vec3, LobeProfile, Rgb)>,
 }
 
 impl PartialVpls {
@@ -110,12 +113,13 @@ impl PartialVpls {
         diffuse.reserve(found.len());
         for left in found {
             if left.lobes.is_some() {
-                let place = left.place();
+                let (edges, place) = (left.edges, left.place());
                 let of_photon = left.lobes.into_iter().flatten();
-                lobed.extend(of_photon.map(|(profile, intensity)| (place, profile, intensity * share)));
+                lobed
+                    .extend(of_photon.map(|(profile, intensity)| (edges, place, profile, intensity * share)));
             }
             let (vpl, intensity) = left.diffuse;
-            diffuse.push(vpl, intensity * share);
+            diffuse.push_behind(left.edges, vpl, intensity * share);
         }
         PartialVpls { diffuse, lobed }
     }

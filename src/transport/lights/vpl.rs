@@ -134,12 +134,14 @@ pub struct VplSet {
     pub vpls: Vec<Vpl>,
     /// Intensity of each VPL.
     pub intensities: Vec<Rgb>,
+    /// Number of edges from the emitter to each VPL, at most 255; empty for VPLs on emitters.
+    pub edges: Vec<u8>,
 }
 
 impl VplSet {
     /// Creates an empty set.
     pub fn new(kind: VplKind, origin: Origin) -> VplSet {
-        VplSet { kind, origin, vpls: Vec::new(), intensities: Vec::new() }
+        VplSet { kind, origin, vpls: Vec::new(), intensities: Vec::new(), edges: Vec::new() }
     }
 
     /// Reserves memory for `more` further VPLs.
@@ -157,10 +159,17 @@ impl VplSet {
         }
     }
 
+    /// Adds a VPL whose light takes `edges` edges to it, unless it is black or not finite.
+    pub fn push_behind(&mut self, edges: u8, vpl: Vpl, intensity: Rgb) {
+        self.push(vpl, intensity);
+        self.edges.resize(self.vpls.len(), edges);
+    }
+
     /// Adds all VPLs of another set.
     pub fn append(&mut self, mut other: VplSet) {
         self.vpls.append(&mut other.vpls);
         self.intensities.append(&mut other.intensities);
+        self.edges.append(&mut other.edges);
     }
 
     /// Number of VPLs.

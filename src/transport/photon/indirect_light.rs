@@ -1,7 +1,8 @@
 //! Indirect light that surfaces reflect along the rays that hit them.
 //!
 //! A surface reflects the irradiance of the map, unless it is nearer than the map resolves (see [`super::near`]).
-//! Surfaces behind thin sheets and gaps count as well. Light by mirrors, glass and other sharp lobes does not count,
+//! Surfaces behind thin sheets and gaps count as well, if the number of edges allows it. Photons count there as if they
+//! had come along one edge. Light by mirrors, glass and other sharp lobes does not count,
 //! since eye samples find it. Emission does not count, since it is direct light.
 //!
 //! Units: radiance.
@@ -16,7 +17,7 @@ use world::shadow;
 use world::{Interior, Surface, World};
 
 /// Maximum number of surfaces that a ray is followed through.
-const MAX_EDGES: u32 = 8;
+const MAX_EDGES: u16 = 8;
 
 /// Counts of the work of gathering.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -39,9 +40,17 @@ pub struct IndirectLight<'w> {
     pub world: &'w World,
     /// Irradiance on its surfaces.
     pub map: &'w IrradianceMap,
+    /// Maximum number of edges that light may take to the points at which it is gathered; `u16::MAX` if no light passes
+    /// sheets.
+    pub edges: u16,
 }
 
 impl IndirectLight<'_> {
+    /// Returns the light for points to which light may take `edges` edges.
+    pub(super) fn within(&self, edges: u16) -> Self {
+        IndirectLight { edges, ..*self }
+    }
+
     /// Returns the radiance that a surface, hit along `direction` at `distance`, reflects back. Also returns the albedo
     /// of the reflection that is still missing because the surface is too near for the map; 0 if none is. Calls
     /// `behind` with every surface that the ray meets behind sheets, or with nothing, and with the share of the light
@@ -61,7 +70,7 @@ impl IndirectLight<'_> {
         if self.world.absorbs() {
             throughput = self.world.edge_shares(interior, first, direction, 0.0)[1];
         }
-        for edge in 0..MAX_EDGES {
+        for edge in 0..MAX_EDGES.min(self.edges.saturating_sub(1)) {
             let bsdf = self.world.bsdf(&surface);
             let out = surface.frame.to_local(-direction);
             let albedo = bsdf.diffuse_albedo(out);

@@ -18,7 +18,7 @@ use world::light::Receivers16;
 use world::shadow;
 
 /// Maximum number of added edges. Surfaces that are still too near use the map.
-const MAX_EDGES: u32 = 4;
+const MAX_EDGES: u16 = 4;
 
 /// Maximum number of near surfaces that share the irradiance of one of them.
 const SHARED: usize = 4;
@@ -102,20 +102,22 @@ impl IndirectLight<'_> {
         counts: &mut GatherCounts,
     ) {
         for edge in 1..=MAX_EDGES {
-            if near.lanes == 0 {
+            if near.lanes == 0 || self.edges <= edge {
                 return;
             }
-            let seed = hash(edge, seed);
+            let seed = hash(edge.into(), seed);
             let mut samplers: [Sampler; LANES] = std::array::from_fn(|lane| Sampler::new(seed, lane as u32));
             counts.near += u64::from(near.lanes.count_ones());
-            self.lit(&near, &mut samplers, radiance);
-            near = self.next(&near, edge == MAX_EDGES, &mut samplers, radiance, counts);
+            let there = self.within(if self.edges == u16::MAX { u16::MAX } else { self.edges - edge });
+            there.lit(&near, &mut samplers, radiance);
+            near = there.next(&near, edge == MAX_EDGES, &mut samplers, radiance, counts);
         }
     }
 
     /// Adds direct light by sampling emitters.
     fn lit(&self, near: &NearHits, samplers: &mut [Sampler; LANES], radiance: &mut [Rgb; LANES]) {
         let world = self.world;
+        let Some(sheets) = self.edges.checked_sub(1) else { return };
         let (mut choice, mut u) = (F32x16::default(), Vec2x16::default());
         for lane in lanes_in(near.lanes) {
             choice[lane] = samplers[lane].next_1d();
@@ -148,7 +150,7 @@ impl IndirectLight<'_> {
             let share = cos * FRAC_1_PI * weight / lights.pdf[lane];
             let arriving = near.throughput.get(lane) * lights.radiance.get(lane) * share;
             if arriving.is_finite() {
-                radiance[lane] += arriving * shadow::arriving(world, &ray, u32::MAX);
+                radiance[lane] += arriving * shadow::arriving(world, &ray, sheets.into());
             }
         }
     }

@@ -37,7 +37,7 @@ pub fn reflected(
     let wo = frame.to_local(surface.out);
     let seed = hash(sample, seed);
     let packets = rays.div_ceil(LANES as u32).max(1);
-    let mut sum = Rgb::ZERO;
+    let (light, mut sum) = (light.within(point.edges), Rgb::ZERO);
     for packet in 0..packets {
         let mut rays = Rays16::default();
         let mut weights = [Rgb::ZERO; LANES];

@@ -7,6 +7,7 @@
 use super::hemisphere::{GatherPoint, GatheredIrradiance, gather};
 use super::indirect_light::{GatherCounts, IndirectLight};
 use super::strata::{Strata, StrataHits};
+use crate::eye::edge_class;
 use crate::gradient::Incidence;
 use crate::hsh::Radiance;
 use crate::lightcut::CutCounts;
@@ -100,12 +101,12 @@ impl FinalGatherSource<'_> {
         candidate: &Candidate,
         counts: &mut GatherCounts,
     ) -> Option<NewRecord> {
-        let &Candidate { sample, point, coat, bands, .. } = candidate;
+        let &Candidate { sample, point, coat, edges, bands, .. } = candidate;
         let settings = self.settings();
         let limits = |distance| FootprintLimits::new(settings, Origin::Indirect, candidate, distance);
         let max_nearness = 1.0 / limits(0.0).radii[0].max(f32::MIN_POSITIVE);
         let at = GatherPoint { point, coat, seed: hash(sample, self.seed), max_nearness };
-        let g = gather(&self.light, &self.strata, &at, &mut work.met, counts);
+        let g = gather(&self.light.within(edges), &self.strata, &at, &mut work.met, counts);
         let luminance = luminance(g.irradiance);
         if !(luminance.is_finite() && g.vector.is_finite() && g.gradient.is_finite()) {
             return None;
@@ -118,9 +119,19 @@ impl FinalGatherSource<'_> {
             Footprint::from_gradient(point.normal, gradient * LUMINANCE, luminance, &limits(distance))
         };
         let diagnostics = Diagnostics { cut: self.strata.len() as u32, distance, ..Diagnostics::default() };
-        let SurfacePoint { position, normal, .. } = point;
-        let record =
-            Record { position, normal, coat, bands, footprint, vector, gradient, luminance, diagnostics };
+        let (SurfacePoint { position, normal, .. }, edge_class) = (point, edge_class(edges));
+        let record = Record {
+            position,
+            normal,
+            coat,
+            edge_class,
+            bands,
+            footprint,
+            vector,
+            gradient,
+            luminance,
+            diagnostics,
+        };
         let series = work.series(&self.strata, candidate, max_nearness);
         Some(NewRecord { origin: Origin::Indirect, sample, record, series })
     }

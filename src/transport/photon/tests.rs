@@ -112,7 +112,7 @@ fn gathering_agrees_with_plain_sampling() {
     let photons = map(&world, 30_000);
     let (found, _) = estimates(&world, &photons, 50, &Control::new()).expect("not cancelled");
     let map = IrradianceMap::new(&found, &photons.site_index);
-    let light = IndirectLight { world: &world, map: &map };
+    let light = IndirectLight { world: &world, map: &map, edges: u16::MAX };
     let mut counts = GatherCounts::default();
     for position in [Vec3::new(0.4, -1.0, 0.1), Vec3::new(-0.6, -1.0, 0.0), Vec3::new(-0.5, -1.0, 0.8)] {
         let point = SurfacePoint { position, normal: Vec3::Y, geometric_normal: Vec3::Y };

@@ -20,6 +20,8 @@ pub struct Candidate {
     pub clearance: f32,
     /// Coat that the light has to pass (see [`world::material::Bsdf::coat`]); 0 without a coat.
     pub coat: u32,
+    /// Maximum number of edges that light may take to the point.
+    pub edges: u16,
     /// Bands of the series that the surface needs; 0 if irradiance is enough.
     pub bands: u8,
     /// Layers that lack a record here.
@@ -34,5 +36,6 @@ impl Candidate {
         let SurfacePoint { position, normal, geometric_normal } = self.point;
         Receiver::irradiance(position, geometric_normal, &Frame::from_normal(normal))
             .with_baseline(self.baseline_luminance)
+            .with_edges(self.edges)
     }
 }

@@ -91,7 +91,7 @@ pub fn add(
         normal: lookup.near.normal,
     };
     for group in group_compact(lookups, world.diagonal, place) {
-        let irradiance = cutter.irradiance(c, source, &group);
+        let irradiance = cutter.irradiance(c, source, task, &group);
         for (lookup, irradiance) in group.iter().zip(irradiance) {
             let found = lookup.factor * irradiance;
             if found.is_finite() {
@@ -118,7 +118,13 @@ fn choose(near: &[NearSurface], record: usize, lookups: &mut Vec<Lookup>) {
 
 impl Cutter<'_> {
     /// Gathers the irradiance at points hit by short rays, on the side of the records.
-    fn irradiance(&mut self, c: &Compensation, source: &LightcutSource, group: &[Lookup]) -> [Rgb; LANES] {
+    fn irradiance(
+        &mut self,
+        c: &Compensation,
+        source: &LightcutSource,
+        task: &[Candidate],
+        group: &[Lookup],
+    ) -> [Rgb; LANES] {
         let settings = CutSettings {
             epsilon: EPSILON,
             max_cut: source.settings.cut.max_cut.div_ceil(CUT_FRACTION),
@@ -127,6 +133,7 @@ impl Cutter<'_> {
         self.points.set(group.iter().map(|lookup| {
             let s = &lookup.near.surface;
             Receiver::irradiance(s.position, s.normal, &Frame::from_normal(lookup.near.normal))
+                .with_edges(task[lookup.record].edges.saturating_sub(1))
         }));
         let (transfer, world) = (&source.context.transfer, source.context.world);
         let cut = self.cut.gather(transfer, world, self.points, &settings);

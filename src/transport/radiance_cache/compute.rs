@@ -21,6 +21,7 @@ use super::record::{Diagnostics, Record};
 use super::series::SeriesGatherer;
 use super::settings::{CacheSettings, Footprints};
 use super::source::{LightcutSource, RecordSource};
+use crate::eye::edge_class;
 use crate::hsh::Radiance;
 use crate::lightcut::{CutCounts, CutSettings, OrientedPoint, PacketLightcut, ReceiverPacket, group_compact};
 use crate::lights::{DirectIndirect, Origin};
@@ -110,6 +111,7 @@ impl LightcutSource<'_> {
             position: candidate.point.position,
             normal,
             coat: candidate.coat,
+            edge_class: edge_class(candidate.edges),
             bands: candidate.bands,
             footprint,
             vector: g.vector,

@@ -4,7 +4,7 @@ use super::candidate::Candidate;
 use super::footprint::Footprint;
 use super::record::{Diagnostics, Record};
 use super::targets::Targets;
-use crate::eye::{PointGeometry, PointSurface, PointSurfaces, ShadingPoints};
+use crate::eye::{PointGeometry, PointSurface, PointSurfaces, ShadingPoints, edge_class};
 use crate::lights::{DirectIndirect, Family, LightTrees, Origin, Profiles, Vpl, VplKind, VplSet};
 use base::kd_tree::KdTree;
 use base::math::{Rgb, luminance};
@@ -28,7 +28,7 @@ pub static MATERIALS: LazyLock<Materials> = LazyLock::new(|| Materials::new(&SCE
 
 /// Returns a shading point on a floor with the normal z.
 pub fn point(position: Vec3) -> PointGeometry {
-    PointGeometry { position, spacing: 0.1, normal: Vec3::Z, coat: 0 }
+    PointGeometry { position, spacing: 0.1, normal: Vec3::Z, coat: 0, edges: u16::MAX }
 }
 
 /// Shading points on a floor, in the order of their index.
@@ -68,6 +68,7 @@ pub fn record(position: Vec3, radii: [f32; 2], irradiance: Rgb) -> Record {
         position,
         normal: Vec3::Z,
         coat: 0,
+        edge_class: edge_class(u16::MAX),
         bands: 0,
         footprint: Footprint {
             axes: [Vec3::X, Vec3::Y],
@@ -91,6 +92,7 @@ pub fn candidate(position: Vec3, normal: Vec3) -> Candidate {
         spacing: 0.1,
         clearance: f32::INFINITY,
         coat: 0,
+        edges: u16::MAX,
         bands: 0,
         missing: DirectIndirect { direct: true, indirect: true },
         baseline_luminance: 0.0,

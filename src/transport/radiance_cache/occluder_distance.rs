@@ -5,7 +5,7 @@
 //! Deviations: the occluder is the one that stopped the shadow ray, not the nearest.
 
 use crate::lightcut::{PacketVisibility, ReceiverPacket};
-use crate::lights::{LightNode, Vpl};
+use crate::lights::{LightNode, LightTrees, Vpl};
 use base::math::{F32x16, LANES, Vec3x16};
 use embree::Occluders16;
 use glam::Vec3;
@@ -68,10 +68,10 @@ impl PacketVisibility for OccluderLog<'_> {
         &self,
         points: &ReceiverPacket,
         lanes: u16,
-        vpl: &Vpl,
+        trees: &LightTrees,
         node: &LightNode,
         light: &mut Vec3x16,
     ) {
-        self.engine.attenuate16(points, lanes, vpl, node, light)
+        self.engine.attenuate16(points, lanes, trees, node, light)
     }
 }

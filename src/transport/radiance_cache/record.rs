@@ -8,7 +8,7 @@
 //! edge: Eq. 11 less its value there, so that it is continuous.
 
 use super::footprint::Footprint;
-use crate::eye::PointGeometry;
+use crate::eye::{PointGeometry, edge_class};
 use crate::hsh::Radiance;
 use crate::lights::Origin;
 use base::math::{Rgb, luminance};
@@ -33,6 +33,8 @@ pub struct Record {
     pub normal: Vec3,
     /// Coat that the light has passed; 0 without a coat. The record lights only surfaces with the same coat.
     pub coat: u32,
+    /// Class of the surfaces that the record lights (see [`edge_class`]).
+    pub edge_class: u16,
     /// Bands of its series; 0 without a series. The record lights only surfaces that need no more bands.
     pub bands: u8,
     /// Region in which the record is used.
@@ -80,7 +82,8 @@ impl Record {
     pub fn delta(&self, p: &PointGeometry, bands: u8) -> f32 {
         let offset = p.position - self.position;
         let tilt = self.tilt(p);
-        if !(tilt < 1.0) || self.coat != p.coat || self.bands < bands {
+        let is_alike = self.coat == u32::from(p.coat) && self.edge_class == edge_class(p.edges);
+        if !(tilt < 1.0) || !is_alike || self.bands < bands {
             return f32::INFINITY;
         }
         let delta = self.footprint.scaled(offset, self.normal).length() + tilt;
@@ -213,7 +216,7 @@ mod tests {
             let record = Record { coat, bands, ..record(Vec3::ZERO, [2.0, 1.0], Rgb::ONE) };
             for (other, needed) in (0..3).flat_map(|coat| (0..8).map(move |bands| (coat, bands))) {
                 let at = PointGeometry { coat: other, ..point(Vec3::X) };
-                assert_eq!(record.at(&at, needed).is_some(), coat == other && bands >= needed);
+                assert_eq!(record.at(&at, needed).is_some(), coat == u32::from(other) && bands >= needed);
             }
         }
     }

@@ -55,6 +55,7 @@ fn open_floor(samples: &EyePass) -> Vec<Candidate> {
             spacing: point.spacing,
             clearance: f32::INFINITY,
             coat: 0,
+            edges: u16::MAX,
             bands: 0,
             missing: DirectIndirect { direct: false, indirect: true },
             baseline_luminance: 0.0,

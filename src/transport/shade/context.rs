@@ -76,5 +76,6 @@ impl ShadingTask {
         let bsdf = lobe.unwrap_or(surface.bsdf);
         Receiver::new(geometry.position, surface.geometric_normal, &frame, bsdf, surface.out)
             .with_baseline(self.baseline_luminance)
+            .with_edges(geometry.edges)
     }
 }

@@ -1,7 +1,7 @@
 //! Patches: groups of shading points coherent enough to be shaded together.
 
 use super::{ShadeSettings, ShadingTask};
-use crate::eye::{PointGeometry, ShadingPoints};
+use crate::eye::{PointGeometry, ShadingPoints, edge_class};
 use crate::lightcut::{CoherenceLimit, OrientedPoint, group_coherent, group_compact};
 use base::math::{Frame, LANES};
 use std::collections::HashMap;
@@ -20,8 +20,11 @@ pub fn patches(
 ) -> Vec<Vec<ShadingTask>> {
     let max_size = (points.len() / count.max(1) as usize).max(MIN_PATCH);
     let place = |task: &ShadingTask| place(&points.geometry[task.point as usize]);
-    let kind =
-        |task: &ShadingTask| (task.lobe_only, task.origin, points.surfaces.lobe_list(task.point as usize));
+    let kind = |task: &ShadingTask| {
+        let point = task.point as usize;
+        let edges = edge_class(points.geometry[point].edges);
+        (task.lobe_only, task.origin, points.surfaces.lobe_list(point), edges)
+    };
     let all = tasks.iter().copied();
     let patches = group_coherent(CoherenceLimit::of(diagonal), all, max_size, place, kind);
     // A cut costs nearly as much for few points as for sixteen, so remnants are grouped again, into full groups. All
@@ -107,7 +110,8 @@ mod tests {
         let mut points = ShadingPoints::default();
         for i in 0..500 {
             let (position, normal) = (owen_sobol_2d(i, 3).extend(0.0), uniform_sphere(owen_sobol_2d(i, 5)));
-            points.geometry.push(PointGeometry { position, spacing: 0.01, normal, coat: 0 });
+            let geometry = PointGeometry { position, spacing: 0.01, normal, coat: 0, edges: u16::MAX };
+            points.geometry.push(geometry);
             let bsdf = bsdfs[usize::from(i % 5 == 0) + usize::from(i % 10 == 0)];
             points.surfaces.push(&PointSurface { bsdf, geometric_normal: normal, out: normal });
         }

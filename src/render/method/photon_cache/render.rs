@@ -199,7 +199,7 @@ impl Renderer for Settings {
         let direct = LightcutSource { context: ShadingContext::new(world, &lights, true), settings: &cache };
 
         let map = self.irradiance(world, control, &mut tally);
-        let light = IndirectLight { world, map: &map };
+        let light = IndirectLight { world, map: &map, edges: u16::MAX };
         let source = FinalGatherSource::new(direct, light, Strata::new(self.rays), self.seed);
         let mut records = Records::default();
         let glossy = glossy.as_ref().and_then(|glossy| glossy.for_points(&eye.points, &cache));

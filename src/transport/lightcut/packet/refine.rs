@@ -212,7 +212,7 @@ impl<'a, 't, 'm, V: PacketVisibility> PacketRefinement<'a, 't, 'm, V> {
             seen |= self.visibility.visible16(self.receivers, doubtful, vpl, node);
         }
         responses.keep(lit & seen);
-        self.visibility.attenuate16(self.receivers, lit & seen, vpl, node, &mut responses);
+        self.visibility.attenuate16(self.receivers, lit & seen, self.trees, node, &mut responses);
         (responses, Sight { known: known.known | lit, seen }, unshadowed)
     }
 

@@ -88,7 +88,7 @@ impl<V: PacketVisibility> Gathering<'_, '_, '_, V> {
             self.counts.packets += 1;
             let visible = self.visibility.visible16(self.receivers, doubtful, vpl, n);
             responses.keep(visible | !doubtful);
-            self.visibility.attenuate16(self.receivers, visible, vpl, n, &mut responses);
+            self.visibility.attenuate16(self.receivers, visible, self.transfer.trees, n, &mut responses);
         }
         Some(responses)
     }

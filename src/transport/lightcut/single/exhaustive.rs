@@ -12,7 +12,7 @@ pub fn gather_all<V: Visibility>(transfer: &Transfer, visibility: &V, receiver: 
         let contribution = leaf.intensity * transfer.unshadowed(receiver, vpl, leaf.kind());
         let (x, normal) = (receiver.position(), receiver.geometric_normal());
         if contribution != Rgb::ZERO && visibility.visible(x, normal, vpl, leaf) {
-            sum += (contribution * visibility.transmittance(x, normal, vpl, leaf)).as_dvec3();
+            sum += (contribution * visibility.transmittance(receiver, transfer.trees, leaf)).as_dvec3();
         }
     }
     sum.as_vec3()

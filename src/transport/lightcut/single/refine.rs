@@ -107,7 +107,7 @@ impl<V: Visibility> PointRefinement<'_, '_, '_, V> {
         self.cut.counts.rays += 1;
         let (x, normal) = (self.receiver.position(), self.receiver.geometric_normal());
         match self.visibility.visible(x, normal, vpl, node) {
-            true => response * self.visibility.transmittance(x, normal, vpl, node),
+            true => response * self.visibility.transmittance(self.receiver, self.trees, node),
             false => Rgb::ZERO,
         }
     }

@@ -54,6 +54,8 @@ pub struct LightTrees {
     pub roots: Vec<u32>,
     /// The VPLs in the order of the leaves, tree after tree: neighbours in a tree are neighbours in memory.
     pub vpls: Vec<Vpl>,
+    /// Number of edges from the emitter to each VPL, at most 255; 0 beyond the end.
+    edges: Vec<u8>,
     /// Profiles that the VPLs refer to.
     pub profiles: Profiles,
 }
@@ -109,8 +111,19 @@ impl LightTrees {
         let finisher = Finisher { set, profiles: &self.profiles, first_vpl: first_vpl as u32, control };
         finisher.finish(&topology, nodes, first_node as u32)?;
         self.vpls.par_extend(topology.leaves.par_iter().map(|r| set.vpls[r.index() as usize]));
+        if !set.edges.is_empty() {
+            self.edges.resize(first_vpl, 0);
+            self.edges.par_extend(topology.leaves.par_iter().map(|r| set.edges[r.index() as usize]));
+        }
         self.roots.push(first_node as u32);
         Some(())
+    }
+
+    /// Returns the VPL that represents a node, and the number of edges from the emitter to it.
+    #[inline]
+    pub fn representative(&self, node: &LightNode) -> (&Vpl, u8) {
+        let index = node.representative();
+        (&self.vpls[index], self.edges.get(index).copied().unwrap_or(0))
     }
 
     /// Returns the roots of all trees, or of the trees for light of one `origin`.

@@ -114,6 +114,8 @@ struct Pending {
     rays: Rays16,
     light: Vec3x16,
     factors: F32x16,
+    /// Maximum numbers of sheets that the samples' light passes (see [`Receiver::sheets`]).
+    sheets: [Option<u32>; LANES],
     /// Lanes of the samples' points.
     points: [u8; LANES],
     count: usize,
@@ -232,6 +234,8 @@ impl SampledCut {
                 let ray = to_vpl(receiver.position(), receiver.geometric_normal(), vpl, node.kind());
                 let factor = if is_weak(node) { density.recip() } else { f32::INFINITY };
                 let sample = Sample { light: response * (node.intensity / density), factor };
+                let (_, before) = trees.representative(node);
+                pending.sheets[pending.count] = receiver.sheets(before);
                 if pending.push(&ray, sample, lane) {
                     pending.trace(visibility, &mut self.visible, &mut self.counts);
                 }
@@ -320,7 +324,7 @@ impl Pending {
         }
         counts.rays += count as u64;
         counts.packets += 1;
-        for i in lanes_in(visibility.arriving16(&self.rays, count, &mut self.light)) {
+        for i in lanes_in(visibility.arriving16(&self.rays, count, &self.sheets, &mut self.light)) {
             let sample = Sample { light: self.light.get(i), factor: self.factors[i] };
             visible[usize::from(self.points[i])].push(sample);
         }
