@@ -18,7 +18,7 @@ pub use lanes::{F32x16, LANES, U32x16, Vec2x16, Vec3x16, first_lanes, lanes_in, 
 pub use placement::Placement;
 pub use quadrature::gauss_legendre;
 pub use real::{Real, WIDTH, f32x8};
-pub use unit::{right_of, unit};
+pub use unit::{right_of, unflattened, unit};
 pub use vector::V3;
 
 /// Linear colour with Rec. 709 primaries: radiance, irradiance, flux or reflectance, as the variable's name says.

@@ -1,6 +1,6 @@
-//! Unit directions of vectors of any length.
+//! Unit directions of vectors of any length, and axes of transforms.
 
-use glam::DVec3;
+use glam::{DMat4, DVec3, Vec4Swizzles};
 
 /// Range of squared lengths for which division by the length loses no precision.
 const SAFE_SQUARED_LENGTHS: std::ops::Range<f64> = 1e-200..1e200;
@@ -36,9 +36,31 @@ pub fn right_of(forward: DVec3, up: DVec3) -> Option<DVec3> {
     unit(unit(across)?.reject_from_normalized(forward))
 }
 
+/// Returns an affine transform with unit axes, as upright as the others, in place of axes of length 0.
+pub fn unflattened(matrix: DMat4) -> DMat4 {
+    let [x, y, z] = [matrix.x_axis, matrix.y_axis, matrix.z_axis].map(Vec4Swizzles::xyz);
+    let [ux, uy, uz] = [x, y, z].map(unit);
+    // The vector product of the next two axes is the third one.
+    let across = |a: Option<DVec3>, b: Option<DVec3>| unit(a?.cross(b?));
+    let beside = |a: Option<DVec3>| a.map(DVec3::any_orthonormal_vector);
+    let axes = match [ux, uy, uz] {
+        [Some(_), Some(_), Some(_)] => return matrix,
+        [None, None, None] => [DVec3::X, DVec3::Y, DVec3::Z].map(Some),
+        [None, None, Some(_)] => [across(beside(uz), uz), beside(uz), Some(z)],
+        [None, Some(_), None] => [beside(uy), Some(y), across(beside(uy), uy)],
+        [Some(_), None, None] => [Some(x), beside(ux), across(ux, beside(ux))],
+        [None, ..] => [across(uy, uz), Some(y), Some(z)],
+        [_, None, _] => [Some(x), across(uz, ux), Some(z)],
+        [.., None] => [Some(x), Some(y), across(ux, uy)],
+    };
+    let [x, y, z] = axes.map(Option::unwrap_or_default).map(|axis| axis.extend(0.0));
+    DMat4::from_cols(x, y, z, matrix.w_axis)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use glam::{DMat3, DQuat};
 
     #[test]
     fn directions_of_any_length_are_unit_vectors() {
@@ -51,6 +73,21 @@ mod tests {
         }
         for none in [DVec3::ZERO, DVec3::NAN, DVec3::INFINITY, DVec3::new(1.0, f64::NEG_INFINITY, 0.0)] {
             assert_eq!(unit(none), None);
+        }
+    }
+
+    #[test]
+    fn axes_without_length_follow_the_others() {
+        let turn = DQuat::from_rotation_y(0.7) * DQuat::from_rotation_x(0.3);
+        let whole = DMat4::from_rotation_translation(turn, DVec3::splat(3.0));
+        for zeros in 0..8 {
+            let scale = DVec3::from_array(std::array::from_fn(|i| f64::from(zeros >> i & 1)));
+            let flat = whole * DMat4::from_scale(scale);
+            let found = unflattened(flat);
+            assert!((DMat3::from_mat4(found).determinant() - 1.0).abs() < 1e-12, "{zeros}");
+            for axis in 0..3 {
+                assert!(scale[axis] == 0.0 || found.col(axis) == flat.col(axis), "{zeros}");
+            }
         }
     }
 

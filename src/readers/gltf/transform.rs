@@ -1,7 +1,7 @@
 //! Transforms of nodes, in double precision, and their axes where a scale is 0.
 
-use base::math::unit;
-use glam::{DMat3, DMat4, DQuat, DVec3, Vec4Swizzles};
+use base::math::unflattened;
+use glam::{DMat3, DMat4, DQuat, DVec3};
 use gltf_json::Node;
 use serde_json::Value;
 
@@ -57,27 +57,6 @@ impl Local {
             }
         }
     }
-}
-
-/// Returns an affine transform with unit axes, as upright as the others, in place of axes of length 0.
-pub(super) fn unflattened(matrix: DMat4) -> DMat4 {
-    let [x, y, z] = [matrix.x_axis, matrix.y_axis, matrix.z_axis].map(Vec4Swizzles::xyz);
-    let [ux, uy, uz] = [x, y, z].map(unit);
-    // The vector product of the next two axes is the third one.
-    let across = |a: Option<DVec3>, b: Option<DVec3>| unit(a?.cross(b?));
-    let beside = |a: Option<DVec3>| a.map(DVec3::any_orthonormal_vector);
-    let axes = match [ux, uy, uz] {
-        [Some(_), Some(_), Some(_)] => return matrix,
-        [None, None, None] => [DVec3::X, DVec3::Y, DVec3::Z].map(Some),
-        [None, None, Some(_)] => [across(beside(uz), uz), beside(uz), Some(z)],
-        [None, Some(_), None] => [beside(uy), Some(y), across(beside(uy), uy)],
-        [Some(_), None, None] => [Some(x), beside(ux), across(ux, beside(ux))],
-        [None, ..] => [across(uy, uz), Some(y), Some(z)],
-        [_, None, _] => [Some(x), across(uz, ux), Some(z)],
-        [.., None] => [Some(x), Some(y), across(ux, uy)],
-    };
-    let [x, y, z] = axes.map(Option::unwrap_or_default).map(|axis| axis.extend(0.0));
-    DMat4::from_cols(x, y, z, matrix.w_axis)
 }
 
 /// Returns the numbers of a member in double precision; `rounded`, if the member has others.
@@ -143,13 +122,6 @@ mod tests {
         let whole = DMat4::from_rotation_translation(turn, DVec3::splat(3.0));
         for zeros in 0..8 {
             let scale = DVec3::from_array(std::array::from_fn(|i| f64::from(zeros >> i & 1)));
-            let flat = whole * DMat4::from_scale(scale);
-            let found = unflattened(flat);
-            let linear = DMat3::from_mat4(found);
-            assert!((linear.determinant() - 1.0).abs() < 1e-12, "{zeros}");
-            for axis in 0..3 {
-                assert!(scale[axis] == 0.0 || found.col(axis) == flat.col(axis), "{zeros}");
-            }
             let local = Local::Steps { scale, rotation: turn, translation: DVec3::splat(3.0) };
             assert!(local.unflattened().abs_diff_eq(whole, 1e-12));
         }

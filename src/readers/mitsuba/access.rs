@@ -61,7 +61,15 @@ impl Object {
     }
 
     pub fn transform(&self, name: &str) -> Result<Option<DMat4>, SceneError> {
-        let get = |v: &PropertyValue| if let PropertyValue::Transform(m) = v { Some(*m) } else { None };
+        Ok(self.transforms(name)?.map(|[matrix, _]| matrix))
+    }
+
+    /// Returns a transform, and the one with a scale of 1 in place of each scale of 0.
+    pub fn transforms(&self, name: &str) -> Result<Option<[DMat4; 2]>, SceneError> {
+        let get = |v: &PropertyValue| match v {
+            PropertyValue::Transform { matrix, axes } => Some([*matrix, *axes]),
+            _ => None,
+        };
         self.typed(name, "transform", get)
     }
 

@@ -37,7 +37,7 @@ impl Converter<'_> {
     }
 
     pub(super) fn scene_emitter(&mut self, emitter: &Object) -> Result<(), SceneError> {
-        let to_world = emitter.transform("to_world")?;
+        let to_world = self.axes(emitter)?;
         match emitter.plugin.as_str() {
             "point" => {
                 let intensity = self.emissive_colour(emitter, "intensity")?.unwrap_or(Rgb::ONE);
@@ -134,6 +134,16 @@ impl Converter<'_> {
         let position = to_world.transform_point3(DVec3::ZERO);
         self.contents.lights.push((DeltaLight::Projector { position: Vec3::ZERO, projector }, position));
         Ok(())
+    }
+
+    /// Returns the `to_world` of a lamp or sensor, with a scale of 1 in place of each scale of 0.
+    pub(super) fn axes(&mut self, object: &Object) -> Result<Option<DMat4>, SceneError> {
+        let Some([to_world, axes]) = object.transforms("to_world")? else { return Ok(None) };
+        if axes != to_world {
+            let what = format!("the to_world of {} \"{}\" has a scale of 0", object.tag, object.plugin);
+            self.log.note(&object.place, what, "it counts as 1: scales do not change lamps and cameras");
+        }
+        Ok(Some(axes))
     }
 
     /// Returns the transform without its scale.

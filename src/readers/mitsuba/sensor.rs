@@ -58,7 +58,7 @@ impl Converter<'_> {
             }
         }
         let SensorFilm { resolution, crop, filter } = self.film(sensor)?;
-        let to_world = sensor.transform("to_world")?.unwrap_or(DMat4::IDENTITY);
+        let to_world = self.axes(sensor)?.unwrap_or(DMat4::IDENTITY);
         let aspect = f64::from(resolution[0]) / f64::from(resolution[1]);
         let near = sensor.positive("near_clip", 1e-2)?;
         let far = sensor.positive("far_clip", 1e4)?;

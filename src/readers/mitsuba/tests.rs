@@ -211,7 +211,41 @@ fn a_sensor_that_shears_is_straightened_with_a_warning() {
         "{:?}",
         loaded.warnings
     );
-    assert!(sensor("0 1 0 0").is_err());
+}
+
+#[test]
+fn a_scale_of_0_changes_no_sensor_and_no_lamp() {
+    let scene = |transform: &str| {
+        let to_world = format!("<transform name=\"to_world\">{transform}</transform>");
+        let text = format!(
+            "<scene version=\"3.0.0\"><sensor type=\"perspective\">{to_world}</sensor>\
+            <sensor type=\"orthographic\" id=\"flat\">{to_world}</sensor>\
+            <emitter type=\"spot\">{to_world}</emitter></scene>"
+        );
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("s.xml");
+        fs::write(&path, text).unwrap();
+        ["", "flat"].map(|camera| {
+            let camera = Some(camera.to_owned()).filter(|name| !name.is_empty());
+            load(&path, &LoadOptions { camera, strict: true, ..LoadOptions::default() }).unwrap()
+        })
+    };
+    let turned = "<rotate x=\"1\" angle=\"30\"/><translate x=\"2\"/>";
+    let expected = scene(turned);
+    for scale in ["value=\"0\"", "x=\"0\"", "y=\"0\"", "x=\"0\" z=\"0\""] {
+        for (found, expected) in scene(&format!("<scale {scale}/>{turned}")).iter().zip(&expected) {
+            assert_eq!(format!("{:?}", found.cameras), format!("{:?}", expected.cameras), "{scale}");
+            assert_eq!(
+                format!("{:?}", found.scene.lights),
+                format!("{:?}", expected.scene.lights),
+                "{scale}"
+            );
+            assert!(
+                found.warnings.iter().any(|warning| warning.what.contains("has a scale of 0")),
+                "{scale}"
+            );
+        }
+    }
 }
 
 #[test]

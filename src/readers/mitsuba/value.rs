@@ -3,7 +3,7 @@
 use super::cie;
 use crate::decode::srgb_to_linear;
 use crate::error::{Location, SceneError};
-use base::math::{Rgb, right_of, unit};
+use base::math::{Rgb, right_of, unflattened, unit};
 use glam::{DMat4, DVec3, DVec4};
 use std::collections::BTreeMap;
 
@@ -22,7 +22,11 @@ pub(super) enum PropertyValue {
     Samples(Vec<(f64, f64)>),
     /// Name of a file with a sampled spectrum.
     SamplesFile(String),
-    Transform(DMat4),
+    /// A transform, and the one with a scale of 1 in place of each scale of 0, with an equal translation.
+    Transform {
+        matrix: DMat4,
+        axes: DMat4,
+    },
 }
 
 type Attributes = BTreeMap<String, String>;
@@ -174,10 +178,13 @@ fn vector(attributes: &Attributes, default: f64, place: &Location) -> Result<DVe
 
 /// Composes the operations of a `<transform>`; the first one is applied first.
 pub(super) fn transform(operations: &[(String, Attributes, Location)]) -> Result<PropertyValue, SceneError> {
-    let mut matrix = DMat4::IDENTITY;
+    let (mut matrix, mut axes) = (DMat4::IDENTITY, DMat4::IDENTITY);
     for (tag, attributes, place) in operations {
-        matrix = operation(tag, attributes, place)? * matrix;
+        let next = operation(tag, attributes, place)?;
+        matrix = next * matrix;
+        axes = unflattened(next) * axes;
     }
+    axes.w_axis = matrix.w_axis;
     if !matrix.is_finite() {
         let place = operations
             .last()
@@ -185,7 +192,7 @@ pub(super) fn transform(operations: &[(String, Attributes, Location)]) -> Result
             .unwrap_or(Location { path: Default::default(), line: None });
         return Err(place.wrong("the transform is not finite", "correct its numbers"));
     }
-    Ok(PropertyValue::Transform(matrix))
+    Ok(PropertyValue::Transform { matrix, axes })
 }
 
 fn operation(tag: &str, attributes: &Attributes, place: &Location) -> Result<DMat4, SceneError> {
@@ -324,23 +331,27 @@ mod tests {
             op("rotate", &[("z", "1"), ("angle", "90")]),
             op("translate", &[("x", "1")]),
         ];
-        let PropertyValue::Transform(m) = transform(&operations).unwrap() else { panic!() };
+        let PropertyValue::Transform { matrix: m, .. } = transform(&operations).unwrap() else { panic!() };
         assert!((m.transform_point3(DVec3::X) - DVec3::new(1.0, 2.0, 0.0)).length() < 1e-12);
         let rows = "1 2 3 4 5 6 7 8 9 10 11 12 0 0 0 1";
-        let PropertyValue::Transform(m) = transform(&[op("matrix", &[("value", rows)])]).unwrap() else {
+        let PropertyValue::Transform { matrix: m, .. } =
+            transform(&[op("matrix", &[("value", rows)])]).unwrap()
+        else {
             panic!()
         };
         assert_eq!(m.transform_point3(DVec3::X), DVec3::new(5.0, 13.0, 21.0));
         let at = op("lookat", &[("origin", "1 2 3"), ("target", "1 2 9"), ("up", "0 1 0")]);
-        let PropertyValue::Transform(m) = transform(&[at]).unwrap() else { panic!() };
+        let PropertyValue::Transform { matrix: m, .. } = transform(&[at]).unwrap() else { panic!() };
         assert_eq!(m, DMat4::from_translation(DVec3::new(1.0, 2.0, 3.0)));
         // Mitsuba 3.9 gives these frames without an up vector.
         for (origin, axis) in [("0 0 5", DVec3::Y), ("0 5 0", DVec3::NEG_Z), ("0 0 -5", DVec3::NEG_Y)] {
             let at = op("lookat", &[("origin", origin), ("target", "0 0 0")]);
-            let PropertyValue::Transform(m) = transform(&[at]).unwrap() else { panic!() };
+            let PropertyValue::Transform { matrix: m, .. } = transform(&[at]).unwrap() else { panic!() };
             assert!(m.transform_vector3(DVec3::X).distance(axis) < 1e-12, "{origin}");
         }
-        let PropertyValue::Transform(m) = transform(&[op("rotate", &[("angle", "0")])]).unwrap() else {
+        let PropertyValue::Transform { matrix: m, .. } =
+            transform(&[op("rotate", &[("angle", "0")])]).unwrap()
+        else {
             panic!()
         };
         assert_eq!(m, DMat4::IDENTITY);
