@@ -241,6 +241,13 @@ fn lists_in_toml_have_the_cameras_of_scenes() {
         let error = list("views.toml", text).unwrap_err().to_string();
         assert!(error.contains(expected), "{text}: {error}");
     }
+    let numbers = camera.replace("[0, 0, 5]", "[0, nan, 5]");
+    let found =
+        list("views.toml", &[camera, &numbers, camera, &camera.replace('5', "inf")].concat()).unwrap();
+    assert_eq!(found.numbers(), [1, 3]);
+    let said: Vec<String> = found.warnings().iter().map(ToString::to_string).collect();
+    assert!(said[0].contains("views.toml:5: ") && said[0].contains("expected a number from"), "{said:?}");
+    assert!(said[1].contains("views.toml:10: "), "{said:?}");
 }
 
 #[test]
