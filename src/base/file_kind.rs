@@ -63,6 +63,17 @@ const EMPTY: FileKind = kind("an empty file", "download or export it again");
 const POINTER: FileKind = kind("a pointer of Git LFS", "run `git lfs pull` to get the file itself");
 const PAGE: FileKind = kind("an HTML page", AGAIN);
 
+const OFF: FileKind = kind("a mesh in the format OFF", "convert it to PLY or OBJ");
+const TIFF: FileKind = kind("a TIFF image", "convert it to PNG or OpenEXR");
+const GLB: FileKind = FileKind {
+    readers: Readers::Extensions(&["glb", "gltf"]),
+    ..kind("a binary glTF model", "give it a name that ends in .glb")
+};
+const PLY: FileKind = FileKind {
+    readers: Readers::Extensions(&["ply"]),
+    ..kind("a PLY mesh", "give it a name that ends in .ply")
+};
+
 /// Kinds with their first bytes.
 const STARTS: [(&[u8], FileKind); 42] = [
     (b"version https://git-lfs.github.com/spec/", POINTER),
@@ -86,14 +97,14 @@ const STARTS: [(&[u8], FileKind); 42] = [
     (b"PXR-USDC", kind("a USD scene", FROM_BLENDER)),
     (b"Ogawa", kind("an Alembic scene", FROM_BLENDER)),
     (b"#VRML", kind("a VRML scene", FROM_BLENDER)),
-    (b"OFF\n", kind("a mesh in the format OFF", "convert it to PLY or OBJ")),
-    (b"OFF\r", kind("a mesh in the format OFF", "convert it to PLY or OBJ")),
+    (b"OFF\n", OFF),
+    (b"OFF\r", OFF),
     (b"3D Geometry File Format", kind("a model of Rhino", "export glTF 2.0 (.glb) from Rhino")),
     (b"\xFF\xFE\xFF\x0E", kind("a model of SketchUp", "export glTF 2.0 (.glb) from SketchUp")),
     (b"ISO-10303-21;", kind("a CAD model without triangles", "export STL or glTF 2.0")),
     (b"GIF8", kind("a GIF image", TO_PNG)),
-    (b"II*\0", kind("a TIFF image", "convert it to PNG or OpenEXR")),
-    (b"MM\0*", kind("a TIFF image", "convert it to PNG or OpenEXR")),
+    (b"II*\0", TIFF),
+    (b"MM\0*", TIFF),
     (b"8BPS", kind("an image of Photoshop", TO_PNG)),
     (b"DDS ", kind("a DDS image", TO_PNG)),
     (b"\xABKTX ", kind("a KTX image", TO_PNG)),
@@ -104,27 +115,9 @@ const STARTS: [(&[u8], FileKind); 42] = [
     (b"#?RADIANCE", image("a Radiance HDR image")),
     (b"#?RGBE", image("a Radiance HDR image")),
     (b"\x76\x2F\x31\x01", image("an OpenEXR image")),
-    (
-        b"glTF",
-        FileKind {
-            readers: Readers::Extensions(&["glb", "gltf"]),
-            ..kind("a binary glTF model", "give it a name that ends in .glb")
-        },
-    ),
-    (
-        b"ply\n",
-        FileKind {
-            readers: Readers::Extensions(&["ply"]),
-            ..kind("a PLY mesh", "give it a name that ends in .ply")
-        },
-    ),
-    (
-        b"ply\r",
-        FileKind {
-            readers: Readers::Extensions(&["ply"]),
-            ..kind("a PLY mesh", "give it a name that ends in .ply")
-        },
-    ),
+    (b"glTF", GLB),
+    (b"ply\n", PLY),
+    (b"ply\r", PLY),
 ];
 
 /// Kinds of texts that begin with `<`, and a word within their first bytes.
