@@ -147,11 +147,35 @@ fn libraries_are_found_by_all_names_and_the_first_definition_counts() {
         ("last.mtl", "newmtl oak\nKd 1 1 1\nnewmtl\tb\nKd 0\t0 1\n"),
     ];
     let text = format!("{HEAD}mesh = [{{ file = \"a.obj\" }}]\n");
-    let scene = load_with("s.toml", &text, &files, true).unwrap().scene;
+    let loaded = load_with("s.toml", &text, &files, false).unwrap();
+    let [again] = &said(&loaded)[..] else { panic!("{:?}", loaded.warnings) };
+    let [place, other] = ["last.mtl:1: the material \"oak\" is also defined in ", "dark oak.mtl:1; that"];
+    assert!(again.contains(place) && again.contains(other), "{again}");
+    let scene = loaded.scene;
     let colours: Vec<_> =
         scene.meshes.iter().map(|m| scene.materials[m.material.0 as usize].diffuse).collect();
     assert_eq!(colours, [Rgb::new(0.25, 0.5, 0.75).into(), Rgb::Z.into()]);
     assert_eq!(scene.sources.len(), 5);
+}
+
+#[test]
+fn materials_that_are_defined_again_are_named_unless_they_are_equal() {
+    let obj = format!("mtllib m.mtl\nusemtl oak\n{QUAD}");
+    let text = format!("{HEAD}mesh = [{{ file = \"a.obj\" }}]\n");
+    let said = |library: &str| -> Vec<String> {
+        said(&load_with("s.toml", &text, &[("a.obj", &*obj), ("m.mtl", library)], false).unwrap())
+    };
+    let [again] = &said("newmtl oak\nKd 1 0 0\nillum 1\n\nnewmtl oak # again\nKd 0 0 1\n")[..] else {
+        panic!()
+    };
+    assert!(again.contains("m.mtl:1: the material \"oak\" is also defined in "), "{again}");
+    assert!(again.contains("m.mtl:5; that definition is used instead"), "{again}");
+    for sound in [
+        "newmtl oak\nKd 1 0 0\nillum 1\nnewmtl oak\nKd 1 0 0\nillum 1\n",
+        "newmtl oak\nKd 1 0 0\nnewmtl oak #2\nKd 0 1 0\nnewmtl oak #3\nKd 0 1 0\nnewmtl elm\nKd 0 0 1\n",
+    ] {
+        assert!(said(sound).len() < 2, "{:?}", said(sound));
+    }
 }
 
 #[test]

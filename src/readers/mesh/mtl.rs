@@ -5,9 +5,11 @@
 //! Reason against `tobj` 4.0.5: a colour of one or two numbers makes its MTL reader panic, and its errors name no line.
 
 use super::encodings;
+use super::faults::{MAX_CODE, are_codes, note_of_codes};
 use super::mtl_statements::listed;
 use super::wavefront::{self, numbers, shown, split_word, statements, values, words};
-use crate::error::{Location, SceneError};
+use crate::decode::srgb_to_linear;
+use crate::error::{Location, SceneError, Warning};
 use crate::statements::Fate;
 use base::math::Rgb;
 use glam::{DMat3, DVec3};
@@ -90,7 +92,57 @@ pub(crate) fn before_materials(bytes: &[u8]) -> Option<u32> {
     (!word.eq_ignore_ascii_case(b"newmtl")).then_some(line)
 }
 
+/// Decodes the colours of a keyword that are whole numbers up to 255 in all of a library; returns notes about them.
+pub(crate) fn decode_codes(materials: &mut [ClassicMaterial]) -> Vec<Warning> {
+    type Colour = fn(&mut ClassicMaterial) -> Option<&mut Rgb>;
+    let keywords: [(&str, Colour); 4] = [
+        ("Kd", |material| Some(&mut material.diffuse)),
+        ("Ks", |material| material.specular.as_mut()),
+        ("Ka", |material| material.ambient.as_mut()),
+        ("Tf", |material| material.filter.as_mut()),
+    ];
+    let mut notes = Vec::new();
+    for (keyword, colour) in keywords {
+        let colours =
+            materials.iter_mut().filter_map(|material| Some((material.place.clone(), *colour(material)?)));
+        let colours: Vec<(Location, Rgb)> = colours.collect();
+        let most = |colour: &Rgb| f64::from(colour.max_element());
+        let greatest = colours.iter().map(|(_, colour)| most(colour)).fold(0.0, f64::max);
+        let are_whole =
+            colours.iter().all(|(_, colour)| colour.fract() == Rgb::ZERO && colour.min_element() >= 0.0);
+        let Some((place, _)) = colours.into_iter().find(|(_, colour)| most(colour) == greatest) else {
+            continue;
+        };
+        if !are_codes(greatest, are_whole) {
+            continue;
+        }
+        let note = note_of_codes(place);
+        notes.push(Warning { what: format!("{keyword}: {}", note.what), ..note });
+        let decode = |code: f32| srgb_to_linear(code / MAX_CODE as f32);
+        materials
+            .iter_mut()
+            .filter_map(colour)
+            .for_each(|colour| *colour = Rgb::from(colour.to_array().map(decode)));
+    }
+    notes
+}
+
 impl ClassicMaterial {
+    /// True if another definition gives an equal material.
+    pub fn is_like(&self, other: &ClassicMaterial) -> bool {
+        self.content() == other.content()
+    }
+
+    /// Returns the material without its name and its lines.
+    fn content(&self) -> ClassicMaterial {
+        let mut content = ClassicMaterial { name: String::new(), text: String::new(), ..self.clone() };
+        content.place = Location::file(Path::new(""));
+        content.transparency = content.transparency.map(|(share, _)| (share, 0));
+        content.maps.values_mut().for_each(|map| map.line = 0);
+        content.unmodelled.iter_mut().for_each(|lack| lack.line = 0);
+        content
+    }
+
     fn new(name: &[u8], place: Location) -> ClassicMaterial {
         ClassicMaterial {
             name: wavefront::name(name),

@@ -11,7 +11,11 @@ pub(crate) const AMBIENT_NOTE: &str = "ambient light is computed; the image of `
 
 /// Statements of MTL files. Small and capital letters count the same.
 pub(crate) const MTL: &[Statement] = &[
-    statement("newmtl", Fate::Read, "name of a material; the first library that has the name counts"),
+    statement(
+        "newmtl",
+        Fate::Read,
+        "name of a material; the first library that has the name counts, and other definitions are named",
+    ),
     statement("illum", Fate::Read, "kind of the surface, below; 0 and 10 and unknown numbers are named"),
     statement("Kd", Fate::Read, "colour of the base, of a metal, or of a principled material"),
     statement(

@@ -144,7 +144,7 @@ impl<'b, 'a> LibraryReader<'b, 'a> {
             self.lacks(source, "map_d", what, "Tf alone counts");
         }
         let white = Reflectance::Constant(Rgb::ONE);
-        let transmittance = Reflectance::Constant(filter(source).unwrap_or(Rgb::ONE).min(Rgb::ONE));
+        let transmittance = Reflectance::Constant(filter(source).unwrap_or(Rgb::ONE));
         let glass = Lobe::Dielectric { eta: index(source), thin: false, reflectance: white, transmittance };
         Material { lobes: vec![glass], ..Material::default() }
     }
@@ -158,7 +158,7 @@ impl<'b, 'a> LibraryReader<'b, 'a> {
         let mirror = |scale| Lobe::Mirror { fresnel: Fresnel::One, scale };
         let specular = source.specular.unwrap_or_default();
         if base == Reflectance::BLACK {
-            let scale = self.colour(source, "map_Ks", specular.min(Rgb::ONE))?;
+            let scale = self.colour(source, "map_Ks", specular)?;
             return Ok(Material { lobes: vec![mirror(scale)], ..Material::default() });
         }
         if source.specular == Some(Rgb::ZERO) {
@@ -198,7 +198,7 @@ impl<'b, 'a> LibraryReader<'b, 'a> {
             return Ok(Material { diffuse: base, ..Material::default() });
         }
         if base == Reflectance::BLACK {
-            let scale = self.colour(source, "map_Ks", ks.min(Rgb::ONE))?;
+            let scale = self.colour(source, "map_Ks", ks)?;
             return Ok(Material { lobes: vec![rough(source, Fresnel::One, scale)], ..Material::default() });
         }
         let root = luminance(ks).clamp(0.0, MAX_DIELECTRIC).sqrt();

@@ -55,6 +55,29 @@ fn material(mtl: &str) -> Material {
     loaded.scene.materials[loaded.scene.meshes[0].material.0 as usize].clone()
 }
 
+#[test]
+fn colours_of_0_to_255_are_coded_and_others_above_1_are_named() {
+    let coded = |mtl: &str| {
+        let loaded = loaded(mtl);
+        let notes = loaded.warnings.iter().filter(|warning| warning.severity == Severity::Note);
+        let notes: Vec<String> = notes.map(ToString::to_string).collect();
+        (loaded.scene.materials[loaded.scene.meshes[0].material.0 as usize].diffuse, notes, warnings(&loaded))
+    };
+    let (colour, notes, said) = coded("Kd 255 0 188\nillum 1\nnewmtl other\nKd 1 2 3");
+    let Reflectance::Constant(colour) = colour else { panic!() };
+    assert!(colour.abs_diff_eq(Rgb::new(1.0, 0.0, 0.503), 1e-3) && said.is_empty(), "{colour} {said:?}");
+    assert!(notes[0].contains("m.mtl:1: Kd: the colours are whole numbers up to 255"), "{notes:?}");
+    for bright in ["Kd 2 0 0.5", "Kd 255 0.5 0", "Kd 2 0 0", "Kd 300 0 0"] {
+        let (colour, notes, said) = coded(&format!("{bright}\nillum 1"));
+        let Reflectance::Constant(colour) = colour else { panic!() };
+        assert!(colour.x == 1.0 && colour.z < 1.0 && notes.is_empty(), "{bright}: {colour} {notes:?}");
+        assert!(said[0].contains("exceeds 1; it is clamped to 1"), "{said:?}");
+    }
+    let (.., said) = coded("Kd 0 0 0\nKs 1.5 0 0\nNs 10");
+    assert!(said[0].contains("exceeds 1; it is clamped to 1"), "{said:?}");
+    assert_eq!(loaded("Ke 255 0 0").scene.meshes[0].emission.unwrap().radiance, Rgb::new(255.0, 0.0, 0.0));
+}
+
 fn principled(mtl: &str) -> Principled {
     *material(mtl).principled.unwrap_or_else(|| panic!("{mtl}"))
 }

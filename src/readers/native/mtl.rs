@@ -61,6 +61,7 @@ impl SceneBuilder<'_> {
                 named.names.insert(text, name);
             }
         }
+        self.name_repeated(&read, &wanted)?;
         let mut first = 0;
         for (file, library) in read {
             let mut reader = LibraryReader::new(self, &file, unit);
@@ -74,6 +75,28 @@ impl SceneBuilder<'_> {
             reader.report()?;
         }
         Ok((named, has_colours))
+    }
+
+    /// Names definitions of materials that are left out, as another one has their name.
+    fn name_repeated(
+        &mut self,
+        read: &[(PathBuf, Vec<ClassicMaterial>)],
+        wanted: &BTreeMap<usize, BTreeSet<String>>,
+    ) -> Result<(), SceneError> {
+        let all: Vec<&ClassicMaterial> = read.iter().flat_map(|(_, library)| library).collect();
+        let used = |name: &String| {
+            let number = wanted.iter().find(|(_, names)| names.contains(name))?.0;
+            all.get(*number).copied()
+        };
+        for (number, material) in all.iter().enumerate() {
+            let used = used(&material.text).or_else(|| used(&material.name));
+            if let Some(used) = used.filter(|used| !wanted.contains_key(&number) && !used.is_like(material)) {
+                let what = format!("the material \"{}\" is also defined in {}", material.text, used.place);
+                let fallback = "that definition is used instead; give each material its own name";
+                self.log.warn(&material.place, what, fallback)?;
+            }
+        }
+        Ok(())
     }
 
     fn read_library(&mut self, file: &Path, from: &Location) -> Result<Vec<ClassicMaterial>, SceneError> {
@@ -93,7 +116,11 @@ impl SceneBuilder<'_> {
             let what = "statements precede the first newmtl";
             self.log.warn(&Location::line(file, line), what, "they are left out")?;
         }
-        mtl::read(&bytes, file)
+        let mut library = mtl::read(&bytes, file)?;
+        for note in mtl::decode_codes(&mut library) {
+            self.log.add(note)?;
+        }
+        Ok(library)
     }
 
     /// Returns the material of faces without one: diffuse, of the colours of the mesh if it has some, else grey.
