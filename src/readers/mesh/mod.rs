@@ -109,16 +109,12 @@ pub fn place(raw: RawMesh, how: &Placement) -> DraftMesh {
             }
         } else {
             let to_normal = normal_matrix(&linear);
-            let normals =
-                raw.normals.iter().map(|n| unit(to_normal * n.as_dvec3()).unwrap_or_default().as_vec3());
-            mesh.normals = normals.collect();
+            let to_world = |normal: &Vec3| direction(to_normal * normal.as_dvec3());
+            mesh.normals = raw.normals.iter().map(to_world).collect();
         }
     }
     let handedness = if is_mirrored != how.flip_normals { -1.0 } else { 1.0 };
-    let to_world = |t: &Vec4| {
-        let along = unit(linear * t.truncate().as_dvec3()).unwrap_or_default().as_vec3();
-        along.extend(t.w * handedness)
-    };
+    let to_world = |t: &Vec4| direction(linear * t.truncate().as_dvec3()).extend(t.w * handedness);
     mesh.tangents = raw.tangents.iter().map(to_world).collect();
     if mesh.uvs.is_empty() && how.needs_uv {
         give_barycentric_uvs(&mut mesh);
@@ -131,6 +127,12 @@ pub fn place(raw: RawMesh, how: &Placement) -> DraftMesh {
     }
     follow_normals(&mut mesh);
     mesh
+}
+
+/// Returns a unit direction; zero stays zero, and numbers that are not finite become NaN.
+fn direction(along: DVec3) -> Vec3 {
+    let other = || if along.is_finite() { DVec3::ZERO } else { DVec3::NAN };
+    unit(along).unwrap_or_else(other).as_vec3()
 }
 
 /// Returns a multiple of the inverse transpose of `m`, which transforms normals; the outside stays outside.
@@ -169,8 +171,11 @@ fn follow_normals(mesh: &mut DraftMesh) {
     let (positions, normals) = (&mesh.positions, &mesh.normals);
     for t in &mut mesh.triangles {
         let [a, b, c] = t.map(|i| positions.get(i as usize).copied().unwrap_or(DVec3::NAN));
-        let sum: DVec3 =
-            t.map(|i| normals.get(i as usize).map_or(DVec3::ZERO, |n| n.as_dvec3())).iter().sum();
+        let normal = |i: u32| normals.get(i as usize).map_or(DVec3::ZERO, |n| n.as_dvec3());
+        let mut sum: DVec3 = t.map(normal).iter().sum();
+        if !sum.is_finite() {
+            sum = t.map(normal).iter().filter(|normal| normal.is_finite()).sum();
+        }
         if (b - a).cross(c - a).dot(sum) < 0.0 {
             t.swap(1, 2);
             mesh.turned += 1;

@@ -41,18 +41,30 @@ pub fn read(
     remarks: &mut Vec<Warning>,
 ) -> Result<RawMesh, SceneError> {
     let fail = |what: String| SceneError::mesh(Location::file(path), format!("mesh {index}: {what}"));
-    let (mesh, flags) = read_block(bytes, index).map_err(fail)?;
+    let Block { mesh, flags, has_more } = read_block(bytes, index).map_err(fail)?;
     let bits = (0..u32::BITS).map(|bit| 1 << bit).filter(|bit| flags & bit != 0);
     for name in bits.map(|bit| format!("0x{bit:04x}")).filter(|name| fate(FLAGS, name) == Fate::Named) {
         let note = FLAGS.iter().find(|flag| flag.name == name).map_or("it is left out", |flag| flag.note);
         let what = format!("mesh {index}: the flag {name} is not read");
         remarks.push(Warning::new(Location::file(path), what, note));
     }
+    if has_more {
+        let what = format!("mesh {index}: data follows the last of its {} triangles", mesh.triangles.len());
+        remarks.push(Warning::new(Location::file(path), what, "it is left out; export the mesh again"));
+    }
     Ok(mesh)
 }
 
-/// Reads a mesh; returns it with its flags.
-fn read_block(bytes: &[u8], index: usize) -> Result<(RawMesh, u32), String> {
+/// A mesh as its block describes it.
+struct Block {
+    mesh: RawMesh,
+    flags: u32,
+    /// True if data follows the last triangle.
+    has_more: bool,
+}
+
+/// Reads a mesh. Triangles may have vertices that do not exist.
+fn read_block(bytes: &[u8], index: usize) -> Result<Block, String> {
     let magic = array(bytes, 0).map(u16::from_le_bytes);
     let version = array(bytes, 2).map(u16::from_le_bytes);
     if magic != Some(MAGIC) {
@@ -90,10 +102,8 @@ fn read_block(bytes: &[u8], index: usize) -> Result<(RawMesh, u32), String> {
     let index_of = |t: &[u8; 12], k: usize| array(t, 4 * k).map_or(u32::MAX, u32::from_le_bytes);
     let triangles = indices.as_chunks::<12>().0.iter();
     mesh.triangles = triangles.map(|t| [index_of(t, 0), index_of(t, 1), index_of(t, 2)]).collect();
-    if let Some(bad) = mesh.triangles.iter().flatten().find(|&&i| u64::from(i) >= vertex_count) {
-        return Err(format!("a triangle uses vertex {bad} of {vertex_count}"));
-    }
-    Ok((mesh, flags))
+    let has_more = stream.bytes(1, 1).is_ok();
+    Ok(Block { mesh, flags, has_more })
 }
 
 /// Returns the offset of block `index`, from the table at the file's end.
@@ -202,6 +212,25 @@ mod tests {
             let is_named = remarks.iter().any(|remark| remark.what.contains(flag));
             assert_eq!((is_named, remarks.len() < 2), (fate(FLAGS, flag) == Fate::Named, true), "{flag}");
         }
+    }
+
+    #[test]
+    fn data_behind_the_last_triangle_is_named() {
+        let said = |triangles: u64| -> Vec<String> {
+            let mut zlib = ZlibEncoder::new(Vec::new(), Compression::fast());
+            zlib.write_all(&[0x1000u32.to_le_bytes().to_vec(), 3u64.to_le_bytes().to_vec()].concat())
+                .unwrap();
+            zlib.write_all(&triangles.to_le_bytes()).unwrap();
+            zlib.write_all(&[0; 36]).unwrap();
+            zlib.write_all(&[0u32, 1, 2, 0, 1, 7].map(u32::to_le_bytes).concat()).unwrap();
+            let file = [&MAGIC.to_le_bytes()[..], &3u16.to_le_bytes(), &zlib.finish().unwrap()].concat();
+            let mut remarks = Vec::new();
+            let mesh = read(&file, 0, Path::new("a.serialized"), &mut remarks).unwrap();
+            assert_eq!(mesh.triangles.len() as u64, triangles);
+            remarks.iter().map(Warning::to_string).collect()
+        };
+        assert_eq!(said(2), [""; 0]);
+        assert!(said(1)[0].contains("data follows the last of its 1 triangles"), "{:?}", said(1));
     }
 
     #[test]

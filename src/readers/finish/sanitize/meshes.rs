@@ -105,7 +105,10 @@ pub(super) fn repair_normals(mesh: &mut DraftMesh, report: &mut SanitizeReport) 
     let geometric = crate::smooth_normals(&mesh.positions, &mesh.triangles);
     for (normal, geometric) in mesh.normals.iter_mut().zip(geometric) {
         if bad(normal) {
-            report.bad_normals += 1;
+            match normal.is_finite() {
+                true => report.bad_normals += 1,
+                false => report.nan_normals += 1,
+            }
             // If faces cancel, any unit vector is valid.
             *normal = if geometric == Vec3::ZERO { Vec3::Z } else { geometric };
         }

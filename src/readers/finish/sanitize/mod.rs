@@ -9,6 +9,7 @@
 mod attributes;
 mod cameras;
 mod lights;
+mod losses;
 mod materials;
 mod meshes;
 mod places;
@@ -24,6 +25,7 @@ use crate::local::LocalCoordinates;
 use attributes::repair_attributes;
 use glam::{Vec2, Vec4};
 use lights::{check_lights, fit_light_texels};
+use losses::Losses;
 use materials::check_material;
 use meshes::{drop_rounded, drop_unusable, repair_normals, use_all_vertices};
 use places::{drop_places, set_coordinates};
@@ -42,15 +44,18 @@ pub(crate) fn sanitize(
     draft: &mut Draft,
     log: &mut Log,
 ) -> Result<(SanitizeReport, LocalCoordinates), SceneError> {
-    let mut report = SanitizeReport::default();
+    let (mut report, mut losses) = (SanitizeReport::default(), Losses::default());
     for mesh in &mut draft.meshes {
+        let before = report;
         drop_unusable(mesh, &mut report);
+        losses.note(&mesh.name, &before, &report);
     }
     drop_coincident_emitters(draft, &draft.main_file(), log)?;
     set_coordinates(draft);
     let coordinates = LocalCoordinates::of(draft);
     let (mut lost, mut triangles) = drop_places(draft, &coordinates, &mut report);
     for mesh in &mut draft.meshes {
+        let before = report;
         let group = mesh.group.and_then(|group| draft.groups.get(group));
         triangles += mesh.triangles.len();
         lost += drop_rounded(mesh, group.map_or(&coordinates, |group| &group.coordinates), &mut report);
@@ -58,7 +63,9 @@ pub(crate) fn sanitize(
         repair_normals(mesh, &mut report);
         repair_coordinates(mesh, &mut report);
         report.turned += mesh.turned;
+        losses.note(&mesh.name, &before, &report);
     }
+    losses.write(&report, &draft.main_file(), log)?;
     if lost as f64 > MAX_LOST * triangles as f64 {
         let what = format!(
             "{lost} triangles are too small for their distance from the camera or the scene's middle"

@@ -16,8 +16,10 @@ pub struct SanitizeReport {
     pub degenerate: usize,
     /// Meshes without triangles after the removals.
     pub empty_meshes: usize,
-    /// Zero or NaN vertex normals, replaced by the geometric ones.
+    /// Zero vertex normals, replaced by the geometric ones.
     pub bad_normals: usize,
+    /// NaN or infinite vertex normals, replaced by the geometric ones.
+    pub nan_normals: usize,
     /// Triangles whose winding was reversed to agree with their vertex normals.
     pub turned: usize,
     /// NaN or infinite texture coordinates, set to 0.
@@ -47,7 +49,8 @@ impl fmt::Display for SanitizeReport {
             (self.huge, "triangles beyond 1e18 dropped"),
             (self.degenerate, "triangles without area dropped"),
             (self.empty_meshes, "empty meshes dropped"),
-            (self.bad_normals, "zero or NaN normals replaced"),
+            (self.bad_normals, "zero normals replaced"),
+            (self.nan_normals, "NaN normals replaced"),
             (self.turned, "triangles turned to face along their vertex normals"),
             (self.bad_uvs, "NaN texture coordinates set to 0"),
             (self.bad_tangents, "NaN tangents left out"),

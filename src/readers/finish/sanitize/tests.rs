@@ -144,7 +144,7 @@ fn bad_normals_become_geometric_and_bad_uvs_zero() {
     mesh.uvs = vec![Vec2::NAN, Vec2::ONE, Vec2::new(f32::INFINITY, 0.0)];
     let mut d = draft(vec![mesh], vec![grey()]);
     let (report, _) = sanitize(&mut d).unwrap();
-    assert_eq!((report.bad_normals, report.bad_uvs), (2, 2));
+    assert_eq!((report.bad_normals, report.nan_normals, report.bad_uvs), (1, 1, 2));
     assert_eq!(d.meshes[0].normals, [Vec3::Z, Vec3::Z, Vec3::new(0.0, 0.6, 0.8)]);
     assert_eq!(d.meshes[0].uvs, [Vec2::ZERO, Vec2::ONE, Vec2::ZERO]);
 }
