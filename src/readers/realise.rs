@@ -16,6 +16,7 @@ use crate::plan::{
     Contents, EnvironmentPlan, ImageSource, MeshPlan, MeshSource, ScenePlan, TexturePlan, TextureSource,
 };
 use crate::stand_in::{self, MissingImages};
+use base::file_kind::file_kind;
 use base::math::Rgb;
 use glam::{DMat3, DMat4};
 use rayon::prelude::*;
@@ -255,21 +256,30 @@ impl Contents {
     ) -> Result<(), SceneError> {
         let decode = |(i, (plan, image)): (usize, (&TexturePlan, &mut Option<DecodedImage>))| {
             let TextureSource::Part { source: ImageSource::Bytes(bytes), channel, name } = &plan.image else {
-                return Ok((None, None));
+                return Ok((None, [None, None]));
             };
-            match decode_mended(bytes, *channel, Path::new(name), &plan.place, false) {
+            let path = Path::new(name);
+            let decoded = match file_kind(bytes).filter(|kind| !kind.is_read_as("")) {
+                Some(kind) => {
+                    Err(SceneError::Foreign { path: path.to_owned(), from: plan.place.clone(), kind })
+                }
+                None => decode_mended(bytes, *channel, path, &plan.place, false),
+            };
+            match decoded {
                 Ok((decoded, remark)) => {
                     *image = Some(decoded);
-                    Ok((None, remark))
+                    Ok((None, [remark, cut_jpeg(bytes, path, &plan.place)]))
                 }
-                Err(error) => stand_in::warning(error, &plan.place).map(|warning| (Some((i, warning)), None)),
+                Err(error) => {
+                    stand_in::warning(error, &plan.place).map(|warning| (Some((i, warning)), [None, None]))
+                }
             }
         };
         let undecoded: Result<Vec<_>, SceneError> =
             self.textures.par_iter().zip(images).enumerate().map(decode).collect();
-        for (undecoded, remark) in undecoded? {
+        for (undecoded, remarks) in undecoded? {
             missing.extend(undecoded);
-            remark.into_iter().try_for_each(|remark| log.add(remark))?;
+            remarks.into_iter().flatten().try_for_each(|remark| log.add(remark))?;
         }
         Ok(())
     }
@@ -314,18 +324,18 @@ fn use_file(path: &Path, tasks: &[Task], budget: &TriangleBudget) -> Result<Used
     });
     let profile = place_of_colours.and_then(|place| colour_profile::warning(&bytes, path, place));
     done.extend(profile.map(Realised::Remark));
-    if !tasks.iter().any(|task| matches!(task, Task::Mesh(..))) && is_cut_jpeg(&bytes) {
-        let what = format!("the JPEG image {} ends too early", path.display());
-        let warning = Warning::new(from.clone(), what, "its rest is grey; download or export it again");
-        done.push(Realised::Remark(warning));
+    if !tasks.iter().any(|task| matches!(task, Task::Mesh(..))) {
+        done.extend(cut_jpeg(&bytes, path, from).map(Realised::Remark));
     }
     Ok((hash, done))
 }
 
-/// True for a JPEG image without the mark of its end behind the start of its last scan.
-fn is_cut_jpeg(bytes: &[u8]) -> bool {
+/// Returns a warning about a JPEG image without the mark of its end behind the start of its last scan.
+fn cut_jpeg(bytes: &[u8], path: &Path, place: &Location) -> Option<Warning> {
     let last = |mark: u8| bytes.windows(2).rposition(|pair| pair == [0xFF, mark]);
-    bytes.starts_with(&[0xFF, 0xD8, 0xFF]) && last(0xD9) < last(0xDA)
+    let is_cut = bytes.starts_with(&[0xFF, 0xD8, 0xFF]) && last(0xD9) < last(0xDA);
+    let what = format!("the JPEG image {} ends too early", path.display());
+    is_cut.then(|| Warning::new(place.clone(), what, "its rest is grey; download or export it again"))
 }
 
 /// Performs a task; returns what it gives, and a warning about its texels.

@@ -12,11 +12,12 @@ use super::pose::Pose;
 use super::report::Findings;
 use super::skin;
 use super::skin::Influences;
-use super::transform::{Place, unflattened};
+use super::transform::Place;
 use crate::error::SceneError;
 use crate::mesh::{Normals, Placement, RawMesh};
 use crate::plan::{Appearance, Contents, ImageSource, MaterialPlan, MeshPlan, MeshSource};
 use crate::selection::PartSelection;
+use base::math::unflattened;
 use glam::DMat4;
 use gltf_json::Index;
 use gltf_json::mesh::Mesh;
@@ -148,7 +149,7 @@ impl Importer<'_> {
         let weights = self.pose.weights(placed.node, node, mesh);
         let joints = node.skin.map(|skin| skin::joints(document, skin, self.tree)).transpose()?;
         let morphs = weights.iter().any(|weight| *weight != 0.0);
-        let places = instancing::places(document, placed.node)?;
+        let places = instancing::places(document, placed.node, &mut self.report)?;
         if joints.is_none() && !morphs {
             let places = places.unwrap_or_else(|| vec![DMat4::IDENTITY]);
             return places.iter().try_for_each(|place| self.show(index, name, to_world * *place));

@@ -1,6 +1,7 @@
 //! Places of the instances of a node's mesh (`EXT_mesh_gpu_instancing`).
 
 use super::document::GltfFile;
+use super::report::Findings;
 use super::transform::quaternion;
 use crate::error::SceneError;
 use glam::{DMat4, DVec3};
@@ -11,7 +12,13 @@ use serde_json::Value;
 const NAME: &str = "EXT_mesh_gpu_instancing";
 
 /// Returns the transforms of a node's instances to the node's coordinates; `None` for a node with one mesh.
-pub(super) fn places(document: &GltfFile, node: usize) -> Result<Option<Vec<DMat4>>, SceneError> {
+///
+/// Instances whose transforms are not finite are left out, and named.
+pub(super) fn places(
+    document: &GltfFile,
+    node: usize,
+    report: &mut Findings,
+) -> Result<Option<Vec<DMat4>>, SceneError> {
     let extensions = document.root.nodes.get(node).and_then(|node: &Node| node.extensions.as_ref());
     let Some(extension) = extensions.and_then(|extensions| extensions.others.get(NAME)) else {
         return Ok(None);
@@ -40,7 +47,7 @@ pub(super) fn places(document: &GltfFile, node: usize) -> Result<Option<Vec<DMat
         return Err(document.wrong(format!("{what} has attributes of different lengths")));
     }
     if count == 0 {
-        return Err(document.wrong(format!("{what} has no instances")));
+        report.lacks("a list of instances is empty", "the mesh is left out; export the model again", &what);
     }
     let vector = |all: &Option<Vec<[f32; 3]>>, i: usize, default: DVec3| {
         all.as_ref().map_or(default, |all| DVec3::from(all[i].map(f64::from)))
@@ -51,9 +58,11 @@ pub(super) fn places(document: &GltfFile, node: usize) -> Result<Option<Vec<DMat
         let (scale, translation) = (vector(&scales, i, DVec3::ONE), vector(&translations, i, DVec3::ZERO));
         DMat4::from_scale_rotation_translation(scale, rotation, translation)
     };
-    let places: Vec<DMat4> = (0..count).map(place).collect();
-    if places.iter().any(|place| !place.is_finite()) {
-        return Err(document.wrong(format!("{what} has a transform that is not finite")));
+    let mut places: Vec<DMat4> = (0..count).map(place).collect();
+    places.retain(DMat4::is_finite);
+    if places.len() < count {
+        let lack = "transforms of instances are not finite";
+        report.lacks(lack, "these instances are left out; repair or re-export the model", &what);
     }
     Ok(Some(places))
 }

@@ -63,6 +63,11 @@ pub(super) fn read(
         return Err(document.wrong(format!("{what} has {} vertices and {length} {name}", positions.len())));
     }
     let corners = corners(document, primitive, positions.len(), what)?;
+    let is_odd =
+        if mode == Mode::Triangles { corners.len() % 3 != 0 } else { matches!(corners.len(), 1 | 2) };
+    if is_odd {
+        report.lacks("the last triangle lacks corners", "it is left out; export the mesh again", what);
+    }
     Ok(Some(RawMesh {
         positions: positions.iter().map(|p| DVec3::from(p.map(f64::from))).collect(),
         normals: normals.into_iter().map(Vec3::from).collect(),

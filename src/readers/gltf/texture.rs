@@ -5,6 +5,7 @@ use super::uri::Resolved;
 use crate::decode::Channel;
 use crate::error::SceneError;
 use crate::plan::{ImageSource, TexturePlan, TextureSource};
+use base::file_kind::file_kind;
 use glam::{Mat3, Vec2, Vec3};
 use gltf_json::extensions::texture::TextureTransform;
 use gltf_json::material::NormalTexture;
@@ -12,6 +13,14 @@ use gltf_json::texture::{Info, MagFilter, Sampler, Texture, WrappingMode};
 use gltf_json::validation::Checked;
 use gltf_json::{Index, image};
 use scene::{Filter, TextureId, Wrap};
+
+/// Types that a file states, and the kinds of the images.
+const MIME_TYPES: [(&str, &str); 4] = [
+    ("image/png", "a PNG image"),
+    ("image/jpeg", "a JPEG image"),
+    ("image/jpg", "a JPEG image"),
+    ("image/webp", "a WebP image"),
+];
 
 /// Reference of a material to a texture.
 #[derive(Clone, Debug)]
@@ -111,6 +120,13 @@ impl Importer<'_> {
         };
         let image_name = image.name.clone().unwrap_or_else(|| format!("image {}", index.value()));
         let source = self.image(image, index)?;
+        if let (ImageSource::Bytes(bytes), Some(stated)) = (&source, &image.mime_type)
+            && let Some(kind) = file_kind(bytes).filter(|kind| kind.is_read_as(""))
+            && !MIME_TYPES.contains(&(stated.0.as_str(), kind.what))
+        {
+            let what = format!("an image is stated to be {}, and its bytes are {}", stated.0, kind.what);
+            self.report.note(&what, "the bytes count", &image_name);
+        }
         let image = TextureSource::Part { name: image_name, source, channel };
         let to_uv = slot.to_uv();
         if !to_uv.is_finite() {

@@ -2,6 +2,7 @@ mod as_written;
 mod colours;
 mod compressed;
 mod container;
+mod faults;
 mod model;
 mod packed;
 mod samples;
