@@ -3,7 +3,7 @@
 use super::args::{CompareArgs, HeatmapError};
 use super::exit::Failure;
 use super::outputs::{Inputs, check_name};
-use super::talk;
+use super::{picture, talk};
 use base::film::metrics::{self, Comparison, Variances, ZTest};
 use base::film::{ExrFile, Image, ImageError, atomic, heatmap, write_srgb8};
 use base::math::Rgb;
@@ -47,30 +47,27 @@ fn read(path: &Path, variance: Option<&Path>) -> Result<(Image, Option<Image>), 
     if file.metadata().text("partial") == Some("true") {
         talk::warning(&format!("{} is partial: its rendering was interrupted", path.display()));
     }
-    let image = finite(file.color().and_then(|image| file.to_rec_709(image)), path)?;
+    let image = finite(file.color().and_then(|image| file.to_rec_709(image)), path, "")?;
     let variance = match variance {
-        Some(path) => Some(not_negative(ExrFile::read(path).and_then(|file| file.color()), path)?),
+        Some(path) => Some(not_negative(ExrFile::read(path).and_then(|file| file.color()), path, "")?),
         None if file.layers().iter().any(|layer| layer == "variance") => {
-            Some(not_negative(file.layer("variance"), path)?)
+            Some(not_negative(file.layer("variance"), path, "variance")?)
         }
         None => None,
     };
     Ok((image, variance))
 }
 
-/// Replaces values that are not finite by 0, with a warning.
-fn finite(image: Result<Image, ImageError>, path: &Path) -> Result<Image, Failure> {
+/// Replaces values of a layer that are not finite, with a warning.
+fn finite(image: Result<Image, ImageError>, path: &Path, layer: &str) -> Result<Image, Failure> {
     let mut image = image.map_err(Failure::input)?;
-    match image.remove_nonfinite() {
-        0 => {}
-        n => talk::warning(&format!("{n} values in {} are NaN or infinite and count as 0", path.display())),
-    }
+    picture::mend(path, layer, &mut image);
     Ok(image)
 }
 
 /// Replaces negative variances by 0, with a warning.
-fn not_negative(image: Result<Image, ImageError>, path: &Path) -> Result<Image, Failure> {
-    let mut image = finite(image, path)?;
+fn not_negative(image: Result<Image, ImageError>, path: &Path, layer: &str) -> Result<Image, Failure> {
+    let mut image = finite(image, path, layer)?;
     let negative = image.pixels.iter().filter(|variance| variance.min_element() < 0.0).count();
     if negative > 0 {
         talk::warning(&format!(

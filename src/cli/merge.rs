@@ -5,7 +5,7 @@
 use super::args::MergeArgs;
 use super::exit::Failure;
 use super::outputs::{Inputs, OutputCheck, check_outputs};
-use super::talk;
+use super::{picture, talk};
 use anyhow::anyhow;
 use base::film::metrics::{rel_mse_of_variance, standard_error};
 use base::film::{ExrFile, Image, Metadata, SAMPLES, Shown, Weight, write_png};
@@ -113,6 +113,7 @@ fn renew_facts(merged: &mut ExrFile, color: &Image) {
 fn noisy(path: &Path) -> Result<ExrFile, Failure> {
     let mut file = ExrFile::read(path).map_err(Failure::input)?;
     file.check_whole().map_err(Failure::input)?;
+    picture::mend_all(path, &mut file);
     let facts = file.metadata();
     let refuse = |reason: &str| Err(Failure::input(anyhow!("{}: {reason}", path.display())));
     if facts.text("partial") == Some("true") && file.numbers(SAMPLES).is_none() {

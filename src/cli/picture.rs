@@ -44,7 +44,19 @@ pub fn beside(path: &Path) -> PathBuf {
 
 /// Replaces what is not finite in the image of a file, or in its `layer`, and warns of it.
 pub fn mend(path: &Path, layer: &str, image: &mut Image) {
-    let Some((count, [column, row])) = image.mend_nonfinite() else { return };
+    if let Some((count, first)) = image.mend_nonfinite() {
+        warn_of_mended(path, layer, count, first);
+    }
+}
+
+/// Replaces what is not finite in all layers of a file, and warns of it.
+pub fn mend_all(path: &Path, file: &mut ExrFile) {
+    for (layer, count, first) in file.mend_nonfinite() {
+        warn_of_mended(path, &layer, count, first);
+    }
+}
+
+fn warn_of_mended(path: &Path, layer: &str, count: usize, [column, row]: [u32; 2]) {
     let of_layer = if layer.is_empty() { String::new() } else { format!(" of the layer `{layer}`") };
     talk::warning(&format!(
         "{}: {count} pixels{of_layer} are NaN or infinite, the first in column {column}, row {row}; NaN counts as 0, \

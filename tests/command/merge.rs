@@ -58,6 +58,26 @@ fn pictures_count_as_much_as_they_have_samples_and_merged_ones_can_be_merged_aga
 }
 
 #[test]
+fn pixels_that_are_no_numbers_are_named_and_mended() {
+    let sandbox = Sandbox::new();
+    for (name, seed) in [("a.exr", "1"), ("b.exr", "2")] {
+        render(&sandbox, name, seed, "4", &["--method", "path"]);
+    }
+    let mut a = file(&sandbox, "a.exr");
+    let mut color = a.color().unwrap();
+    (color.pixels[24 + 5].x, color.pixels[30].y) = (f32::NAN, f32::NAN);
+    a.replace_color(&color, None).unwrap();
+    a.write(&sandbox.path("a.exr")).unwrap();
+    let warning =
+        "warning: a.exr: 2 pixels are NaN or infinite, the first in column 5, row 1; NaN counts as 0";
+    let merged = merge(&sandbox, &["b.exr", "a.exr"]).expect(0).stderr;
+    assert!(merged.contains(warning), "{merged}");
+    assert!(file(&sandbox, "m.exr").color().unwrap().pixels.iter().all(|pixel| pixel.is_finite()));
+    let compared = sandbox.run(&["compare", "a.exr", "b.exr"]).expect(0);
+    assert!(compared.stderr.contains(warning) && !compared.stdout.contains("NaN"), "{}", compared.stderr);
+}
+
+#[test]
 fn pictures_are_merged_with_those_alone_that_are_sharpened_as_they_are() {
     let sandbox = Sandbox::new();
     let scene = super::ROOM.replace("rfilter type=\"box\"", "rfilter type=\"mitchell\"");

@@ -2,10 +2,11 @@
 
 use super::exr_read::text;
 use super::exr_write::{name_of, set, write};
-use super::{ExrFile, Fact, Image, ImageError};
+use super::{ExrFile, Fact, Image, ImageError, mended_value};
 use crate::exr_file::ColourModel;
 use crate::math::luminance;
 use ::exr::prelude::{AnyChannel, AnyChannels, FlatSamples, Text, WritableImage};
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 impl ExrFile {
@@ -42,6 +43,33 @@ impl ExrFile {
         }
         *channels = AnyChannels::sort(list);
         Ok(())
+    }
+
+    /// Mends the float numbers of all layers as [`Image::mend_nonfinite`]. Returns for each layer with such numbers its
+    /// name, the number of its pixels, and column and row of the first.
+    pub fn mend_nonfinite(&mut self) -> Vec<(String, usize, [u32; 2])> {
+        let mut mended = Vec::new();
+        for part in &mut self.parts.layer_data {
+            let width = part.size.0.max(1);
+            let mut layers: BTreeMap<String, BTreeSet<usize>> = BTreeMap::new();
+            for channel in &mut part.channel_data.list {
+                let samples: Vec<f32> = channel.sample_data.values_as_f32().collect();
+                if matches!(channel.sample_data, FlatSamples::U32(_)) || samples.iter().all(|x| x.is_finite())
+                {
+                    continue;
+                }
+                let name = text(&channel.name);
+                let layer = name.rsplit_once('.').map_or("", |(layer, _)| layer);
+                let bad = (0..).zip(&samples).filter(|(_, x)| !x.is_finite()).map(|(at, _)| at);
+                layers.entry(layer.to_owned()).or_default().extend(bad);
+                channel.sample_data = FlatSamples::F32(samples.into_iter().map(mended_value).collect());
+            }
+            for (layer, pixels) in layers {
+                let first = pixels.first().copied().unwrap_or_default();
+                mended.push((layer, pixels.len(), [(first % width) as u32, (first / width) as u32]));
+            }
+        }
+        mended
     }
 
     /// Renames the layer `from` to `to`, if it exists.

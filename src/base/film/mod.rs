@@ -99,11 +99,7 @@ impl Image {
         let first = self.pixels.iter().position(is_bad)? as u32;
         let count = self.pixels.iter().filter(|pixel| is_bad(pixel)).count();
         for channel in self.pixels.iter_mut().flat_map(|pixel| pixel.as_mut()) {
-            *channel = match *channel {
-                value if value.is_finite() => value,
-                f32::INFINITY => BRIGHTEST,
-                _ => 0.0,
-            };
+            *channel = mended_value(*channel);
         }
         Some((count, [first % self.width.max(1), first / self.width.max(1)]))
     }
@@ -116,6 +112,15 @@ impl Image {
 
 /// Value of an infinite channel of an image from elsewhere: the largest half float.
 const BRIGHTEST: f32 = 65504.0;
+
+/// Returns [`BRIGHTEST`] for infinity, and 0 for other numbers that are not finite.
+fn mended_value(value: f32) -> f32 {
+    match value {
+        value if value.is_finite() => value,
+        f32::INFINITY => BRIGHTEST,
+        _ => 0.0,
+    }
+}
 
 /// Replaces every non-finite number by 0; returns their number.
 fn remove_nonfinite<'a>(numbers: impl Iterator<Item = &'a mut f32>) -> u64 {
