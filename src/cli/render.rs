@@ -15,7 +15,7 @@ use base::film::SAMPLES;
 use base::progress::Control;
 use base::stats::{Stage, Stats, Stopwatch, peak_resident_bytes};
 use render::method::path::PartialImage;
-use render::session::{BLACK, FrameError, Opened, Remark, RenderedFrame};
+use render::session::{FrameError, Opened, Remark, RenderedFrame};
 use serde_json::Value;
 use std::fs;
 use std::sync::Arc;
@@ -65,7 +65,7 @@ pub fn still(job: &RenderJob, opened: &Opened, span: RunSpan, control: &Control)
     if job.reproducible {
         picture::forget_circumstances(&mut frame.film);
     }
-    let is_black = frame.is_black();
+    let black = frame.black_warning().filter(|_| job.reading.strict).map(str::to_owned);
     let can_go_on = files.exr.is_some() && frame.film.layers.iter().any(|layer| layer.name == SAMPLES);
     let RenderedFrame { film, mut stats, facts, remarks, measured, complete, unverified, .. } = frame;
     say(&remarks);
@@ -81,8 +81,10 @@ pub fn still(job: &RenderJob, opened: &Opened, span: RunSpan, control: &Control)
     stats.add_time(Stage::Total, job.run.elapsed());
     report(job, stats, facts)?;
     let output = files.main().display();
+    if let Some(warning) = black {
+        return Err(Failure::render(anyhow!("{output}: {warning}")));
+    }
     match (complete, unverified) {
-        (true, _) if job.reading.strict && is_black => Err(Failure::render(anyhow!("{output}: {BLACK}"))),
         (true, false) => Ok(()),
         (true, true) => Err(Failure::interrupted(anyhow!(
             "interrupted; {output} is complete, but its error is not measured"

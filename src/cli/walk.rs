@@ -14,7 +14,7 @@ use base::film::{Film, Image, Look};
 use base::progress::Control;
 use base::stats::{Stage, Stopwatch};
 use readers::LoadOptions;
-use render::session::{BLACK, FrameError, Opened, Remark, RenderedFrame, Session};
+use render::session::{FrameError, Opened, Remark, RenderedFrame, Session};
 use render::walk::saved::{self, Pace};
 use render::walk::views::{ListedViews, Outlook};
 use render::walk::{Walk, exposure};
@@ -225,7 +225,7 @@ impl Frames<'_> {
             return Err(interrupted(&label));
         }
         self.showing.rendered(&frame.film.color);
-        let is_black = frame.is_black();
+        let black = frame.black_warning().map(str::to_owned);
         if is_there {
             self.report.repeat();
         } else {
@@ -236,10 +236,10 @@ impl Frames<'_> {
         }
         let seconds = watch.elapsed().wall_seconds;
         talk::event("frame", || json!({ "frame": number, "state": "end", "seconds": seconds }));
-        if job.reading.strict && is_black {
-            return Err(Failure::render(anyhow!("{label}: {BLACK}")));
+        match black.filter(|_| job.reading.strict) {
+            Some(warning) => Err(Failure::render(anyhow!("{label}: {warning}"))),
+            None => Ok(()),
         }
-        Ok(())
     }
 
     /// Writes a frame, on which `watch` has run since its start, and reports its files.

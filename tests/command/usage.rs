@@ -211,6 +211,7 @@ fn a_black_picture_is_warned_of_and_an_error_under_strict() {
     let arguments = ["render", "black.xml", "-o", "a.exr", "--spp", "1", "--resolution", "4x4"];
     let warned = sandbox.run(&arguments).expect(0);
     assert!(warned.stderr.contains("warning: the image is black"), "{}", warned.stderr);
+    assert!(warned.stderr.contains("the emitter \"rectangle"), "{}", warned.stderr);
     let strict = sandbox.run(&[&arguments[..], &["--strict"]].concat()).expect(1);
     assert!(strict.stderr.contains("error: a.exr: the image is black"), "{}", strict.stderr);
     let dark = text.replace("<emitter type=\"area\"/>", "");

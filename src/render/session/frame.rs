@@ -4,6 +4,7 @@ use crate::denoise::NOISY_VARIANCE;
 use crate::method::{Method, Output};
 use base::film::metrics::{rel_mse_of_variance, standard_error};
 use base::film::{BACKGROUND, Film, Layer, Metadata, NO_BACKGROUND};
+use base::shown::shown_line;
 use base::stats::Stats;
 use scene::Scene;
 use serde_json::Value;
@@ -13,9 +14,37 @@ use world::view::View;
 pub(super) const FOCUSED: &str = "path tracing seldom finds sunlight through solid glass, and never finds point and directional \
     lights through it; use --method cache or another method with virtual lights";
 
-/// Warning of a black image, with its remedies.
-pub const BLACK: &str = "the image is black: no light reaches the surfaces in view; check the position and direction of \
-    the camera, and that lights are inside rooms and face the scene";
+/// Start of the warning of a black image.
+const BLACK: &str = "the image is black: no light reaches the surfaces in view";
+
+/// Maximum number of emitters that the warning of a black image names.
+const MAX_NAMED: usize = 3;
+
+/// Returns the warning of a black image of a scene that has light: names of its lights, and remedies.
+pub(super) fn black_warning(scene: &Scene) -> String {
+    let mut emitters: Vec<String> = Vec::new();
+    for mesh in scene.meshes.iter().filter(|mesh| mesh.emission.is_some()) {
+        let name = format!("the emitter \"{}\"", shown_line(&mesh.name));
+        if !emitters.contains(&name) {
+            emitters.push(name);
+        }
+    }
+    let left_out = emitters.len().saturating_sub(MAX_NAMED);
+    emitters.truncate(MAX_NAMED);
+    let counted = |count: usize, what: &str| (count > 0).then(|| format!("{count} {what}"));
+    let others = [
+        counted(left_out, "more emitters"),
+        counted(scene.lights.len(), "point, spot or directional lights"),
+        counted(scene.discs.len(), "suns"),
+        scene.environment.is_some().then(|| "the environment".to_owned()),
+    ];
+    let lights: Vec<String> = emitters.into_iter().chain(others.into_iter().flatten()).collect();
+    format!(
+        "{BLACK} from its lights ({}); check the position and direction of the camera, and that lights are inside rooms \
+         and face the scene: emitters shine from their fronts",
+        lights.join(", ")
+    )
+}
 
 /// A rendered frame.
 pub struct RenderedFrame {
@@ -47,9 +76,12 @@ pub enum Remark {
 }
 
 impl RenderedFrame {
-    /// True if the image is black everywhere.
-    pub fn is_black(&self) -> bool {
-        self.film.color.is_black()
+    /// Returns the warning that the image is black, if there is one.
+    pub fn black_warning(&self) -> Option<&str> {
+        self.remarks.iter().find_map(|remark| match remark {
+            Remark::Warning(text) if text.starts_with(BLACK) => Some(text.as_str()),
+            _ => None,
+        })
     }
 }
 

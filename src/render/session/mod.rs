@@ -20,7 +20,7 @@ mod report;
 pub use error::FrameError;
 pub use finish::Finish;
 pub(crate) use former::{Former, VisibleDifferences, WalkState};
-pub use frame::{BLACK, Remark, RenderedFrame};
+pub use frame::{Remark, RenderedFrame};
 pub use goal::{ErrorLimit, Goal, PlanGoal, TimeGoal};
 
 pub use transport::eye::{Averaging, Feature, Features, UnknownFeature};

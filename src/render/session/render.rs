@@ -142,7 +142,7 @@ impl Session {
         }
         // Scenes without light have a warning of their own.
         if output.complete && !scene.is_dark() && output.color.is_black() {
-            warnings.push(frame::BLACK.to_owned());
+            warnings.push(frame::black_warning(scene));
         }
         warnings.into_iter().map(Remark::Warning).collect()
     }
