@@ -56,12 +56,6 @@ transform = [{ scale = 0.6 }, { translate = [1.2, -1.2, 0] }]
 /// Columns and rows of the middles of the four, and a corner.
 const PLACES: [[u32; 2]; 5] = [[18, 13], [45, 13], [18, 37], [45, 37], [1, 1]];
 
-fn sandbox() -> Sandbox {
-    let sandbox = Sandbox::new();
-    fs::write(sandbox.path("s.toml"), SCENE).unwrap();
-    sandbox
-}
-
 fn render(sandbox: &Sandbox, output: &str, more: &[&str]) -> Finished {
     sandbox.run(&[&["render", "s.toml", "-o", output, "--spp", "4", "--exposure", "0"], more].concat())
 }
@@ -76,7 +70,7 @@ fn at<T: Copy>(image: &Image<T>, [x, y]: [u32; 2]) -> T {
 
 #[test]
 fn a_hidden_background_is_transparent_by_every_method() {
-    let sandbox = sandbox();
+    let sandbox = Sandbox::with("s.toml", SCENE);
     for method in ["path", "cache", "lightcuts", "photon-cache", "reconstruction"] {
         for denoise in ["--denoise", "--no-denoise"] {
             let more = ["--background", "none", "--method", method, denoise, "--view", "standard"];
@@ -113,7 +107,7 @@ fn a_hidden_background_is_transparent_by_every_method() {
 
 #[test]
 fn other_commands_make_transparent_files_too() {
-    let sandbox = sandbox();
+    let sandbox = Sandbox::with("s.toml", SCENE);
     let rgba = |name: &str| {
         let png = image::open(sandbox.path(name)).unwrap();
         assert_eq!(png.color(), image::ColorType::Rgba8, "{name}");
@@ -141,7 +135,7 @@ fn other_commands_make_transparent_files_too() {
 
 #[test]
 fn the_denoiser_leaves_the_background_as_it_is() {
-    let sandbox = sandbox();
+    let sandbox = Sandbox::with("s.toml", SCENE);
     for method in ["path", "cache", "lightcuts"] {
         for more in [&[][..], &["--aov", "normal"]] {
             let run =
@@ -163,7 +157,7 @@ fn the_denoiser_leaves_the_background_as_it_is() {
 
 #[test]
 fn layers_that_a_png_cannot_hold_are_named() {
-    let sandbox = sandbox();
+    let sandbox = Sandbox::with("s.toml", SCENE);
     let more = ["--method", "path", "--no-denoise", "-r", "8", "--aov", "alpha,depth"];
     let said = render(&sandbox, "x.png", &more).expect(0).stderr;
     assert!(
@@ -177,7 +171,7 @@ fn layers_that_a_png_cannot_hold_are_named() {
 
 #[test]
 fn layers_of_first_hits_are_not_averaged() {
-    let sandbox = sandbox();
+    let sandbox = Sandbox::with("s.toml", SCENE);
     let more = ["--method", "path", "--no-denoise", "--aov", "normal,depth,object,position,alpha"];
     let length = |file: &ExrFile| file.layer("normal").unwrap().map(|normal| normal.length());
     render(&sandbox, "mean.exr", &more).expect(0);
@@ -201,7 +195,7 @@ fn layers_of_first_hits_are_not_averaged() {
 
 #[test]
 fn exposure_over_automatic_counts_from_automatic_everywhere() {
-    let sandbox = sandbox();
+    let sandbox = Sandbox::with("s.toml", SCENE);
     let fast = ["--no-denoise", "--method", "path", "--spp", "4", "-r", "16"];
     let stops = |name: &str| file(&sandbox, name).metadata().number("png_exposure").unwrap();
     let more = |words: &[&str], exposure: &str| {

@@ -175,6 +175,32 @@ fn the_commands_of_the_page_work_on_files_as_blender_exports_them() {
 }
 
 #[test]
+fn the_unit_of_lamps_is_an_option() {
+    let mut buffer = Buffer::default();
+    let corners = [-1.0, 0.0, -1.0, 1.0, 0.0, -1.0, 0.0, 0.0, 1.0];
+    let position = buffer.floats("VEC3", 3, &corners);
+    let lights = json!({ "lights": [{ "type": "point", "color": [1, 1, 1], "intensity": 54.4 }] });
+    let file = json!({
+        "asset": { "version": "2.0" }, "scene": 0, "scenes": [{ "nodes": [0, 1] }],
+        "nodes": [{ "mesh": 0 }, { "translation": [0, 2, 0], "extensions": { "KHR_lights_punctual": { "light": 0 } } }],
+        "meshes": [{ "primitives": [{ "attributes": { "POSITION": position } }] }],
+        "extensionsUsed": ["KHR_lights_punctual"], "extensions": { "KHR_lights_punctual": lights },
+        "buffers": [{ "byteLength": buffer.bytes.len() }],
+        "bufferViews": buffer.views, "accessors": buffer.accessors,
+    });
+    let sandbox = Sandbox::new();
+    fs::write(sandbox.path("m.glb"), glb(&file, &buffer.bytes)).unwrap();
+    let light = |unit: &str| {
+        let place = ["--look-from", "0,3,0.1", "--look-at", "0,0,0", "--env", "0", "--method", "path"];
+        let base = ["render", "m.glb", "-o", "a.exr", "--lumens-per-watt", unit];
+        sandbox.run(&[&base, &place[..], &SMALL[..2], &["--spp", "4", "--no-denoise"]].concat()).expect(0);
+        lightsplat::film::read_exr(&sandbox.path("a.exr")).unwrap().luminance()
+    };
+    let (lumens, watts) = (light("683"), light("1"));
+    assert!(lumens > 0.0 && (watts / lumens - 683.0).abs() < 0.1, "{watts} {lumens}");
+}
+
+#[test]
 fn info_names_cameras_frames_and_materials_of_an_export() {
     let sandbox = Sandbox::new();
     fs::write(sandbox.path("room.glb"), exported(true)).unwrap();

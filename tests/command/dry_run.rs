@@ -14,8 +14,7 @@ fn dry(sandbox: &Sandbox, arguments: &[&str]) -> String {
 
 #[test]
 fn dry_runs_name_files_resolution_method_and_memory() {
-    let sandbox = Sandbox::new();
-    fs::write(sandbox.path("path.toml"), walk::PATH).unwrap();
+    let sandbox = Sandbox::with("path.toml", walk::PATH);
     let still =
         ["render", "room.xml", "-o", "new/a.exr", "--crop", "4,2,8,6", "--method", "path", "--spp", "7"];
     let text = dry(&sandbox, &still);
@@ -36,8 +35,7 @@ fn dry_runs_name_files_resolution_method_and_memory() {
 
 #[test]
 fn dry_runs_have_the_errors_of_real_runs() {
-    let sandbox = Sandbox::new();
-    fs::write(sandbox.path("path.toml"), walk::PATH).unwrap();
+    let sandbox = Sandbox::with("path.toml", walk::PATH);
     fs::write(sandbox.path("broken.xml"), "<scene").unwrap();
     let cases: [(&[&str], i32); 7] = [
         (&["render", "room.xml", "-o", "a.exr", "--crop", "95,0,2,2"], 2),

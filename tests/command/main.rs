@@ -45,6 +45,13 @@ impl Sandbox {
         Sandbox { folder }
     }
 
+    /// A sandbox that has one more file.
+    fn with(name: &str, text: &str) -> Sandbox {
+        let sandbox = Sandbox::new();
+        std::fs::write(sandbox.path(name), text).unwrap();
+        sandbox
+    }
+
     fn path(&self, name: &str) -> PathBuf {
         self.folder.path().join(name)
     }

@@ -32,8 +32,7 @@ transform = [{ rotate = { axis = [1, 0, 0], angle = 90 } }, { translate = [0, 2,
 "#;
 
 fn sandbox() -> Sandbox {
-    let sandbox = Sandbox::new();
-    fs::write(sandbox.path("path.toml"), PATH).unwrap();
+    let sandbox = Sandbox::with("path.toml", PATH);
     fs::create_dir(sandbox.path("f")).unwrap();
     sandbox
 }
