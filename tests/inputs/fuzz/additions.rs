@@ -35,6 +35,7 @@ pub fn add(format: &str, bytes: &[u8], random: &mut Random) -> Addition {
         "ply" => ply(random),
         "exr" => exr(random),
         "views" => to_views(&text(), random),
+        "mtl" if random.below(8) == 0 => to_library(&text(), random),
         "obj" | "mtl" | "stl" => to_lines(&text(), random),
         "gltf" => to_gltf(bytes, random),
         "xml" => to_xml(&text(), random),
@@ -226,6 +227,14 @@ fn to_lines(text: &str, random: &mut Random) -> Addition {
     let values = *random.pick(&["", " 1", " 0.5 0.5 0.5", " -s 1 1 1 tile.png", " name"]);
     let line = format!("{}{values}", name(random));
     Addition::told(with_line(text, &line, random), "a keyword")
+}
+
+/// Defines a material of a library again, with or without a comment behind its name.
+fn to_library(text: &str, random: &mut Random) -> Addition {
+    let definitions: Vec<&str> = text.lines().filter(|line| line.starts_with("newmtl ")).collect();
+    let definition = random.pick(&definitions);
+    let comment = *random.pick(&["", " # again"]);
+    Addition::told(format!("{text}\n{definition}{comment}\nKd 0.11 0.22 0.33\n"), "a definition again")
 }
 
 /// Extensions that a warning names as a whole.

@@ -2,7 +2,7 @@
 //!
 //! - A file that is cut off: what is lost is told. A cut at the end of a statement is valid in OBJ, MTL and TOML, whose
 //!   files do not say where they end.
-//! - A wrong number of triangles, vertices or faces in a header.
+//! - A wrong number of triangles, vertices, faces, elements or bytes.
 //! - Another encoding: UTF-16, a byte order mark, line ends of other systems. The scene is equal, or it is told.
 //! - NaN in place of a number.
 //! - Swapped bytes. They may be other valid values, so only an emptier scene has to be told. Digits are not swapped: a
@@ -11,8 +11,9 @@
 //! A case follows from its number, as those of [`super::fuzz`] do, and the same variables of the environment count.
 
 use super::mutate::{Random, number_places};
+use super::seeds::{self, Seed};
 use super::target::{Workplace, without_sky};
-use super::{Extent, MEMORY, listen, seeds};
+use super::{Extent, MEMORY, listen};
 use lightsplat::readers::{LoadOptions, Loaded, ViewList};
 use std::collections::BTreeMap;
 use std::fs;
@@ -40,7 +41,7 @@ enum Rule {
 struct Read {
     /// Everything that an image depends on.
     content: String,
-    /// Number of meshes, textures and lights, or of views. Polygons of other shapes have other numbers of triangles.
+    /// Number of triangles, textures and lights, or of views.
     amount: usize,
     /// Warnings and repairs.
     told: Vec<String>,
@@ -59,8 +60,8 @@ fn read(workplace: &Workplace, extension: &str, bytes: &[u8]) -> Result<Read, St
     let options = LoadOptions { most_copied: Some(0), ..without_sky() };
     let loaded = workplace.load(extension, &options).map_err(|error| error.to_string())?;
     let Loaded { scene, cameras, warnings, repairs, .. } = loaded;
-    let meshes = scene.meshes.iter().filter(|mesh| !mesh.triangles.is_empty()).count();
-    let amount = meshes + scene.textures.len() + scene.lights.len();
+    let triangles: usize = scene.meshes.iter().map(|mesh| mesh.triangles.len()).sum();
+    let amount = triangles + scene.textures.len() + scene.lights.len();
     let content = format!(
         "{:?} {:?} {:?} {:?} {:?} {cameras:?}",
         scene.meshes, scene.groups, scene.materials, scene.textures, scene.lights
@@ -80,6 +81,8 @@ fn damage(format: &str, bytes: &[u8], random: &mut Random) -> (Vec<u8>, String, 
             (bytes[..at].to_vec(), format!("cut at {at} of {}", bytes.len()), rule)
         }
         1 if matches!(format, "stl" | "ply") => with_count(bytes, random),
+        1 if format == "serialized" => with_inflated_count(bytes, random),
+        1 if format == "gltf" => with_member(bytes, random),
         2 if text.is_some() => {
             let (bytes, kind) = encoded(text.unwrap_or_default(), random);
             (bytes, kind.to_owned(), Rule::EqualOrTold)
@@ -108,6 +111,39 @@ fn with_count(bytes: &[u8], random: &mut Random) -> (Vec<u8>, String, Rule) {
     (damaged, format!("a count of {count}"), Rule::EqualOrTold)
 }
 
+/// States another number of vertices or triangles in an inflated mesh, behind its flags and its name.
+fn with_inflated_count(bytes: &[u8], random: &mut Random) -> (Vec<u8>, String, Rule) {
+    let count = *random.pick(&[0u64, 1, 2, 3, 5, 7, 100, 65_536, u64::MAX]);
+    let mut damaged = bytes.to_vec();
+    // Names hold no zero.
+    let name = if bytes.get(4) == Some(&b's') { "square\0".len() } else { 0 };
+    let at = 4 + name + 8 * random.below(2);
+    if let Some(number) = damaged.get_mut(at..at + 8) {
+        number.copy_from_slice(&count.to_le_bytes());
+    }
+    (damaged, format!("a count of {count}"), Rule::EqualOrTold)
+}
+
+/// States another number of elements or bytes in the JSON of a model.
+///
+/// A file of fewer elements may be valid.
+fn with_member(bytes: &[u8], random: &mut Random) -> (Vec<u8>, String, Rule) {
+    let (key, rule) = *random.pick(&[("count", Rule::FullOrTold), ("byteLength", Rule::EqualOrTold)]);
+    let unchanged = || (bytes.to_vec(), format!("no {key}"), Rule::EqualOrTold);
+    let Ok(text) = std::str::from_utf8(bytes) else { return unchanged() };
+    let start = format!("\"{key}\": ");
+    let places: Vec<usize> = text.match_indices(&start).map(|(at, _)| at + start.len()).collect();
+    if places.is_empty() {
+        return unchanged();
+    }
+    let at = *random.pick(&places);
+    let end = at + text[at..].find(|c: char| !c.is_ascii_digit()).unwrap_or_default();
+    let before: u64 = text[at..end].parse().unwrap_or_default();
+    let count = *random.pick(&[0, 1, 2, 3, 5, 7, 100, 65_536, u64::from(u32::MAX), before + 1, before + 3]);
+    let rule = if key == "count" && count < before { Rule::Any } else { rule };
+    (format!("{}{count}{}", &text[..at], &text[end..]).into_bytes(), format!("a {key} of {count}"), rule)
+}
+
 /// Writes a text in another encoding, or with other line ends.
 fn encoded(text: &str, random: &mut Random) -> (Vec<u8>, &'static str) {
     let units = || format!("\u{feff}{text}").encode_utf16().collect::<Vec<u16>>();
@@ -132,6 +168,12 @@ fn with_nan(bytes: &[u8], format: &str, random: &mut Random) -> (Vec<u8>, String
     } else if std::str::from_utf8(bytes).is_ok() && !numbers.is_empty() {
         let nan = *random.pick(&["nan", "NaN", "-nan(ind)", "1.#QNAN"]);
         damaged.splice(random.pick(&numbers).clone(), nan.bytes());
+    } else if matches!(format, "ply" | "gltf" | "serialized") && bytes.len() >= 4 {
+        // Any four bytes may be other numbers.
+        let at = random.below(bytes.len() - 3);
+        let nan = if random.below(2) == 0 { f32::NAN.to_le_bytes() } else { f32::NAN.to_be_bytes() };
+        damaged[at..at + 4].copy_from_slice(&nan);
+        return (damaged, format!("NaN at {at}"), Rule::FullOrTold);
     }
     (damaged, "NaN".to_owned(), Rule::EqualOrTold)
 }
@@ -178,10 +220,10 @@ fn try_damage(format: &str, count: u64) {
     }
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("fuzz").join(format!("damage-{format}-{first}"));
     let workplace = Workplace::new(folder);
-    let seeds: Vec<(Read, &str, Vec<u8>)> = (seeds::of(format).into_iter())
+    let seeds: Vec<(Read, Seed)> = (seeds::of(format).into_iter())
         .filter_map(|seed| {
             let bytes = seed.pack(seed.bytes.clone());
-            Some((read(&workplace, seed.extension, &bytes).ok()?, seed.extension, bytes))
+            Some((read(&workplace, seed.extension, &bytes).ok()?, seed))
         })
         .collect();
     assert!(!seeds.is_empty(), "no seed of {format} loads");
@@ -189,8 +231,20 @@ fn try_damage(format: &str, count: u64) {
     let (mut case, mut loaded) = (first, 0);
     while extent.has(case) {
         let mut random = Random::new(case);
-        let (before, extension, whole) = random.pick(&seeds);
-        let (bytes, kind, rule) = damage(format, whole, &mut random);
+        let (before, seed) = random.pick(&seeds);
+        let extension = seed.extension;
+        // Half of the cases damage what is packed.
+        let (whole, bytes, kind, rule) = match random.below(2) {
+            0 => {
+                let (bytes, kind, rule) = damage(format, &seed.bytes, &mut random);
+                (seed.bytes.clone(), seed.pack(bytes), kind, rule)
+            }
+            _ => {
+                let whole = seed.pack(seed.bytes.clone());
+                let (bytes, kind, rule) = damage(format, &whole, &mut random);
+                (whole, bytes, kind, rule)
+            }
+        };
         let begun = lightsplat::stats::Stopwatch::start();
         let after = catch_unwind(AssertUnwindSafe(|| read(&workplace, extension, &bytes)));
         let time = begun.elapsed();
@@ -205,7 +259,7 @@ fn try_damage(format: &str, count: u64) {
             // Numbers say nothing about the kind.
             let kind_alone: String = kind.chars().filter(|c| !c.is_ascii_digit()).collect();
             let shown =
-                || format!("case {case}, {extension}: {kind}: {fault}: {}", difference(whole, &bytes));
+                || format!("case {case}, {extension}: {kind}: {fault}: {}", difference(&whole, &bytes));
             wrong.entry(format!("{extension} {kind_alone} {fault}")).or_insert_with(shown);
         }
         case += 1;

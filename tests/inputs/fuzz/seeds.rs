@@ -85,7 +85,7 @@ pub fn of(target: &str) -> Vec<Seed> {
         "obj" => valid("obj").into_iter().chain(vec![Seed::plain("obj", ALL_OF_OBJ)]).collect(),
         "mtl" => valid("mtl").into_iter().chain(vec![Seed::plain("mtl", ALL_OF_MTL)]).collect(),
         "ply" => valid("ply").into_iter().chain(vec![binary_ply(true), binary_ply(false)]).collect(),
-        "stl" => vec![Seed::plain("stl", STL), binary_stl()],
+        "stl" => vec![Seed::plain("stl", STL), Seed::plain("stl", FACET), binary_stl()],
         "serialized" => valid("serialized").into_iter().chain(vec![inflated(3), inflated(4)]).collect(),
         "gltf" => samples::all().into_iter().flat_map(|(_, model, _)| gltf(model)).collect(),
         "exr" => valid("exr").into_iter().chain(vec![layered_exr()]).collect(),
@@ -118,6 +118,9 @@ const ALL_OF_MTL: &str = "newmtl slab\nKd 0.6 0.6 0.5\nKe 1 2 3\nmap_Ke tile.png
 const STL: &str = "solid roof # of a house\n# two slopes\n facet normal 0 0 1\n  outer loop\n   vertex 0 0 0\n   \
     vertex 1 0 0\n   vertex 0 1 0\n  endloop\n endfacet\n facet normal 0 0 1\n  outer loop\n   vertex 1 0 0\n   \
     vertex 1 1 0.5\n   vertex 0 1 0\n  endloop\n endfacet\nendsolid roof\n";
+
+const FACET: &str = "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\n\
+    endfacet\nendsolid a\n";
 
 /// Triangles with colours of VisCAM.
 fn binary_stl() -> Seed {

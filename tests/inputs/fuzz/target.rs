@@ -23,7 +23,7 @@ fn scenes() -> Vec<(String, String)> {
     let head = "resolution = [8, 8]\ncamera = { origin = [0, 1, 5], target = [0, 0, 0] }\n\
         environment = { radiance = 1 }\nmaterial = [{ name = \"m\", kind = \"diffuse\", reflectance = 0.5 }]\n";
     let mut scenes = Vec::new();
-    for mesh in ["obj", "ply", "serialized", "stl"] {
+    for mesh in ["obj", "ply", "serialized"] {
         let own = if mesh == "obj" { "mesh = [{ file = \"case.obj\" }, " } else { "mesh = [" };
         let text = format!("{head}{own}{{ file = \"case.{mesh}\", material = \"m\" }}]\n");
         scenes.push((format!("of-{mesh}.toml"), text));
@@ -86,7 +86,8 @@ impl Workplace {
     /// Loads the scene that the case is, or is a part of.
     pub fn load(&self, extension: &str, options: &LoadOptions) -> Result<Loaded, SceneError> {
         let scene = match extension {
-            "toml" | "xml" | "gltf" | "glb" => self.case(extension),
+            // Without triangles, a mesh alone is an error.
+            "toml" | "xml" | "gltf" | "glb" | "stl" => self.case(extension),
             "spd" => self.folder.join("of-spd.xml"),
             other => self.folder.join(format!("of-{other}.toml")),
         };
