@@ -184,7 +184,7 @@ fn render(job: &RenderJob, opened: &Opened, work: Work, control: &Control) -> Re
         FrameError::Interrupted | FrameError::Unplanned => Failure::interrupted(error),
         FrameError::Memory { .. } | FrameError::Unplannable(_) => Failure::usage(error),
     })?;
-    if !frame.complete && frame.is_black() {
+    if !frame.complete && frame.film.color.is_black() {
         return Err(Failure::interrupted(FrameError::Interrupted));
     }
     frame.stats.merge(&session.stats);

@@ -19,7 +19,7 @@ pub(super) enum Fault {
     NoUv,
     /// A vertex or face whose colour is infinite or no number.
     NoColour,
-    /// A polygon of many corners that crosses itself, so that its surface is approximate.
+    /// A polygon that crosses itself, so that its surface is approximate.
     Crossing,
 }
 
@@ -58,7 +58,7 @@ const MESSAGES: [(Fault, &str, &str); 8] = [
     ),
     (
         Fault::Crossing,
-        "polygons of many corners that cross themselves",
+        "polygons that cross themselves",
         "parts of them may be wrong; divide them into triangles in the program that made them",
     ),
 ];

@@ -31,6 +31,12 @@ pub fn read(bytes: &[u8], path: &Path, remarks: &mut Vec<Warning>) -> Result<Raw
         PlyContents { mesh: RawMesh::default(), faults: Faults::default(), has_odd: false, path };
     match contents.read(&header, values.as_mut(), remarks) {
         Ok(()) => {
+            let behind = values.rest().trim_ascii().len();
+            if behind > 0 {
+                let what = format!("{behind} bytes follow the last element");
+                let fallback = "they are left out; repair or re-export the mesh";
+                remarks.push(Warning::new(contents.place(values.as_ref()), what, fallback));
+            }
             contents.faults.report(remarks);
             Ok(contents.mesh)
         }
@@ -83,6 +89,22 @@ mod tests {
         put(&[4]);
         (0..4).for_each(|i: i32| put(&i.to_le_bytes()));
         out
+    }
+
+    #[test]
+    fn data_behind_the_last_element_is_named() {
+        let said = |bytes: &[u8]| -> Vec<String> {
+            let mut remarks = Vec::new();
+            super::read(bytes, Path::new("t.ply"), &mut remarks).unwrap();
+            remarks.iter().map(Warning::to_string).filter(|said| said.contains("follow")).collect()
+        };
+        let (text, binary) = (ascii(), binary(true));
+        for whole in [text.as_bytes(), &binary] {
+            assert_eq!((said(whole), said(&[whole, b"\n \n"].concat())), (vec![], vec![]));
+            assert!(said(&[whole, b"\nmore"].concat())[0].contains("4 bytes follow the last element"));
+        }
+        let fewer = text.replace("element face 1", "element face 0");
+        assert!(said(fewer.as_bytes())[0].contains("bytes follow the last element; they are left out"));
     }
 
     #[test]

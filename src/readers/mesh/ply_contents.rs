@@ -12,7 +12,7 @@ use std::path::Path;
 
 /// Returns the number of elements to allocate: the header's count, limited by what the remaining bytes can hold.
 fn expected(element: &Element, values: &dyn PlyValues) -> usize {
-    let most = values.left() / element.properties.len().max(1);
+    let most = values.rest().len() / element.properties.len().max(1);
     usize::try_from(element.count).map_or(most, |count| count.min(most))
 }
 

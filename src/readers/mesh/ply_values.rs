@@ -28,8 +28,8 @@ pub(super) trait PlyValues {
         None
     }
 
-    /// Returns the number of bytes not read yet.
-    fn left(&self) -> usize;
+    /// Returns the bytes not read yet.
+    fn rest(&self) -> &[u8];
 }
 
 pub(super) struct Ascii<'a> {
@@ -57,8 +57,8 @@ impl PlyValues for Ascii<'_> {
         Some(self.line + 1)
     }
 
-    fn left(&self) -> usize {
-        self.rest.len()
+    fn rest(&self) -> &[u8] {
+        self.rest
     }
 }
 
@@ -84,7 +84,7 @@ impl PlyValues for Binary<'_> {
         scalar(self)
     }
 
-    fn left(&self) -> usize {
-        self.rest.len()
+    fn rest(&self) -> &[u8] {
+        self.rest
     }
 }

@@ -9,19 +9,26 @@ use glam::{DMat3, DVec2, DVec3};
 /// Number of corners up to which ears are clipped.
 const MAX_CLIPPED: usize = 2_000;
 
+/// Deviation of areas that counts as rounding, relative to the square of the polygon's length.
+const ROUNDING: f64 = 1e-6;
+
 /// Adds the triangles of a polygon of at least three corners; `position` returns the position of a corner. Returns
-/// false if the polygon has many corners and crosses itself, so that its surface is approximate.
+/// false if the polygon crosses itself, so that its surface is approximate.
 pub(super) fn cut(corners: &[u32], position: impl Fn(&u32) -> DVec3, triangles: &mut Vec<[u32; 3]>) -> bool {
     let mut is_exact = true;
     if corners.len() > 3 {
         let points: Vec<DVec3> = corners.iter().map(position).collect();
-        if let Some(flat) = flattened(&points).filter(|flat| !is_convex(flat)) {
+        let flat = flattened(&points);
+        is_exact = flat.is_some() || !is_folded(&points);
+        if let Some(flat) = flat.filter(|flat| !is_convex(flat)) {
             let found;
             (found, is_exact) = if flat.len() > MAX_CLIPPED {
                 let cut = large_polygon::triangles(&flat);
                 (cut.triangles, !cut.crosses_itself)
             } else {
-                (ears(&flat), true)
+                let ears = ears(&flat);
+                let is_whole = is_whole(&flat, &ears);
+                (ears, is_whole)
             };
             if !found.is_empty() {
                 triangles.extend(found.into_iter().map(|t| t.map(|corner| corners[corner as usize])));
@@ -43,6 +50,22 @@ fn ears(flat: &[DVec2]) -> Vec<[u32; 3]> {
         _ => [e[0], e[1], e[2]],
     };
     ears.chunks_exact(3).map(oriented).collect()
+}
+
+/// True if triangles have the area of their polygon.
+fn is_whole(flat: &[DVec2], triangles: &[[u32; 3]]) -> bool {
+    let next = flat.iter().cycle().skip(1);
+    let double_area: f64 = flat.iter().zip(next).map(|(a, b)| a.perp_dot(*b)).sum();
+    let found: f64 = triangles.iter().map(|t| turn(t.map(|i| flat[i as usize]))).sum();
+    let longest = flat.iter().map(|p| p.length_squared()).fold(0.0, f64::max);
+    (found - double_area.abs()).abs() <= ROUNDING * longest
+}
+
+/// True if parts of a polygon without an area in sum have one, as of a bow tie.
+fn is_folded(points: &[DVec3]) -> bool {
+    let area = |w: &[DVec3]| (w[0] - points[0]).cross(w[1] - points[0]).length();
+    let longest = points.iter().map(|p| (p - points[0]).length_squared()).fold(0.0, f64::max);
+    points.windows(2).any(|w| area(w) > ROUNDING * longest)
 }
 
 /// Returns the polygon in the plane across its mean normal, counter-clockwise; `None` without area.
@@ -120,6 +143,42 @@ mod tests {
             let back: Vec<DVec3> = turned.into_iter().rev().collect();
             let (triangles, area) = cut_all(&back);
             assert_eq!((triangles.len(), area), (4, 5.0));
+        }
+    }
+
+    #[test]
+    fn polygons_of_few_corners_that_cross_themselves_are_told() {
+        let is_exact = |flat: &[[f64; 2]]| {
+            let (points, corners) = (points(flat), (0..flat.len() as u32).collect::<Vec<_>>());
+            cut(&corners, |&corner| points[corner as usize], &mut Vec::new())
+        };
+        for crossed in [
+            &[[0.0, 0.0], [1.0, 0.0], [-4.0, 0.25], [0.0, 1.0]][..],
+            &[[0.0, 0.0], [1.0, 1.0], [1.0, 0.0], [0.0, 1.0]],
+            &[[0.0, 0.0], [1.0, 1.0], [1.0, 0.0], [0.0, 2.0]],
+            &[[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [1.0, -1.0], [0.0, 4.0]],
+        ] {
+            assert!(!is_exact(crossed), "{crossed:?}");
+        }
+        for simple in [
+            &[[0.0, 0.0], [1.0, 0.0], [0.1, 0.1], [0.0, 1.0]][..],
+            &[[0.0, 0.0], [1.0, 0.0], [1.0, 0.0], [0.0, 1.0]],
+            &[[0.0, 0.0], [1.0, 0.0], [2.0, 0.0], [3.0, 0.0]],
+            &[[0.0, 0.0], [0.0, 0.0], [0.0, 0.0], [0.0, 0.0]],
+            &[
+                [0.0, 0.0],
+                [3.0, 0.0],
+                [3.0, 3.0],
+                [0.0, 3.0],
+                [0.0, 0.0],
+                [1.0, 1.0],
+                [1.0, 2.0],
+                [2.0, 2.0],
+                [2.0, 1.0],
+                [1.0, 1.0],
+            ],
+        ] {
+            assert!(is_exact(simple), "{simple:?}");
         }
     }
 

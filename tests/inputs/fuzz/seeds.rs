@@ -146,7 +146,7 @@ fn binary_ply(little: bool) -> Seed {
     let format = if little { "binary_little_endian" } else { "binary_big_endian" };
     let head = format!(
         "ply\nformat {format} 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty double z\n\
-        property float u\nproperty float v\nelement face 1\nproperty list uchar int vertex_indices\nproperty short n\n\
+        property float u\nproperty float v\nelement face 2\nproperty list uchar int vertex_indices\nproperty short n\n\
         end_header\n"
     );
     let mut bytes = head.into_bytes();
@@ -159,9 +159,12 @@ fn binary_ply(little: bool) -> Seed {
         put(&0.5f64.to_le_bytes());
         [x, y].iter().for_each(|v| put(&v.to_le_bytes()));
     }
-    put(&[4]);
-    (0..4i32).for_each(|i| put(&i.to_le_bytes()));
-    put(&7i16.to_le_bytes());
+    // Polygons of other shapes would have other numbers of triangles.
+    for corners in [[0i32, 1, 2], [0, 2, 3]] {
+        put(&[3]);
+        corners.iter().for_each(|i| put(&i.to_le_bytes()));
+        put(&7i16.to_le_bytes());
+    }
     Seed::plain("ply", bytes)
 }
 
