@@ -234,7 +234,8 @@ fn to_library(text: &str, random: &mut Random) -> Addition {
     let definitions: Vec<&str> = text.lines().filter(|line| line.starts_with("newmtl ")).collect();
     let definition = random.pick(&definitions);
     let comment = *random.pick(&["", " # again"]);
-    Addition::told(format!("{text}\n{definition}{comment}\nKd 0.11 0.22 0.33\n"), "a definition again")
+    // The last definition of a library counts, so all that was told is told yet.
+    Addition::told(format!("{definition}{comment}\nKd 0.11 0.22 0.33\n{text}"), "a definition again")
 }
 
 /// Extensions that a warning names as a whole.
