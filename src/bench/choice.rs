@@ -11,7 +11,7 @@ use super::study::{
 use super::{Benchmark, Kind, Scenes};
 use base::stats::Stopwatch;
 use render::method::{LightStore, Method};
-use render::plan::{Chooser, DRAFT, FINAL, Ladder, MethodChoice, PREVIEW, options};
+use render::plan::{Chooser, DRAFT, FINAL, Ladder, MethodChoice, PREVIEW};
 use serde::Serialize;
 use serde_json::json;
 use std::path::PathBuf;
@@ -161,7 +161,7 @@ impl Budget {
         let chosen = if chose_paths { paths } else { cache };
         let cost = |chosen: f64, best: f64| if chosen > best { chosen / best } else { 1.0 };
         Budget {
-            options: options(method),
+            options: method.scaled_options(),
             seconds: shot.seconds(),
             cache,
             paths,

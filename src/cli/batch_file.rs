@@ -310,7 +310,7 @@ mod tests {
         assert!(files.exr.unwrap().ends_with("out/still.03.exr") && png.ends_with("out/still.03.png"));
         let Command::Render(still) = found[0].command().unwrap() else { panic!("{found:?}") };
         assert_eq!(still.method.method().unwrap().spp(), 2);
-        let Method::Cache(settings) = still.method.method().unwrap() else { panic!("{still:?}") };
+        let Method::Vpl(settings) = still.method.method().unwrap() else { panic!("{still:?}") };
         assert_eq!(settings.cache.accuracy, [0.5, 0.25]);
         assert!(still.picture.resume && still.picture.denoise.denoise() == Some(true));
         let Command::Walk(walk) = found[1].command().unwrap() else { panic!("{found:?}") };

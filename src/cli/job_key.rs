@@ -2,7 +2,6 @@
 
 use base::film::ExrFile;
 use readers::{ViewList, fnv1a};
-use render::method::ScaledSetting;
 use render::method::path::PartialImage;
 use render::session::{ErrorLimit, Goal, PlanGoal, Session, TimeGoal};
 use serde_json::{Value, json};
@@ -13,13 +12,10 @@ use std::path::Path;
 pub fn of(session: &Session, goal: &Goal, more: Value) -> String {
     let Goal { method, may_choose, plan, features, averaging, denoise_quality, keep_noisy, verify, .. } =
         goal;
-    let keys = |pinned: &[ScaledSetting]| pinned.iter().map(|setting| setting.key()).collect::<Vec<_>>();
     let plan = match plan {
         PlanGoal::AsSet => Value::Null,
-        PlanGoal::Time(TimeGoal { seconds, pinned, .. }) => json!([seconds, keys(pinned)]),
-        PlanGoal::Error(ErrorLimit { error, max_samples, pinned }) => {
-            json!([error, max_samples, keys(pinned)])
-        }
+        PlanGoal::Time(TimeGoal { seconds, pinned, .. }) => json!([seconds, pinned]),
+        PlanGoal::Error(ErrorLimit { error, max_samples, pinned }) => json!([error, max_samples, pinned]),
     };
     hash(json!({
         "version": env!("CARGO_PKG_VERSION"),

@@ -5,7 +5,7 @@ use anyhow::anyhow;
 use base::setting::{Choice, Parsed, Spec};
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser, ValueParser};
 use clap::{Arg, ArgAction, ArgMatches, Args, Command, FromArgMatches};
-use render::method::{Method, ScaledSetting};
+use render::method::Method;
 
 /// Name for a method that lightsplat chooses.
 const AUTO: &str = "auto";
@@ -55,9 +55,9 @@ impl MethodArgs {
         self.name == AUTO && self.typed.iter().all(|(key, _)| OF_ANY_METHOD.contains(key))
     }
 
-    /// Returns the settings on the command line that the quality scale moves. Plans do not change them.
-    pub fn pinned(&self) -> Vec<ScaledSetting> {
-        self.typed.iter().filter_map(|(key, _)| ScaledSetting::of_key(key)).collect()
+    /// Returns the keys of the settings on the command line. Plans do not change them.
+    pub fn pinned(&self) -> Vec<&'static str> {
+        self.typed.iter().map(|(key, _)| *key).collect()
     }
 }
 
@@ -226,9 +226,9 @@ mod tests {
         let by_cuts = method("cache", &[("direct", "cuts"), ("indirect", "cuts")]).unwrap_err();
         assert!(by_cuts.contains("--method reconstruction"), "{by_cuts}");
         let cache = method("cache", &[("max_cut", "7"), ("clamp", "0")]).unwrap();
-        let Method::Cache(settings) = cache else { panic!("{cache:?}") };
+        let Method::Vpl(settings) = cache else { panic!("{cache:?}") };
         assert_eq!((settings.cut.max_cut, settings.cut.clamp), (7, None));
         let typed = [("max_cut", "7"), ("seed", "3"), ("spp", "2")];
-        assert_eq!(args("auto", &typed).unwrap().pinned(), [ScaledSetting::Spp, ScaledSetting::MaxCut]);
+        assert_eq!(args("auto", &typed).unwrap().pinned(), ["spp", "seed", "max_cut"]);
     }
 }

@@ -4,7 +4,7 @@ use super::exit::Failure;
 use anyhow::anyhow;
 use base::stats::Stopwatch;
 use clap::{Args, ValueEnum};
-use render::method::{Method, ScaledSetting};
+use render::method::Method;
 use render::plan::{DRAFT, FINAL, Ladder, PREVIEW, REFERENCE};
 use render::session::{ErrorLimit, PlanGoal, TimeGoal};
 
@@ -57,7 +57,7 @@ pub struct PlanArgs {
 
 impl PlanArgs {
     /// Returns `method` with the settings of a quality, except the pinned ones.
-    pub fn method(&self, method: Method, pinned: &[ScaledSetting]) -> Result<Method, Failure> {
+    pub fn method(&self, method: Method, pinned: &[&'static str]) -> Result<Method, Failure> {
         let Some(quality) = self.quality else { return Ok(method) };
         let ladder = Ladder::new(method, pinned).ok_or_else(|| unplannable("--quality has"))?;
         Ok(ladder.at(quality.level()))
@@ -70,7 +70,7 @@ impl PlanArgs {
     pub fn goal(
         &self,
         method: &Method,
-        pinned: Vec<ScaledSetting>,
+        pinned: Vec<&'static str>,
         max_samples: Option<u32>,
         run: Stopwatch,
     ) -> Result<PlanGoal, Failure> {
@@ -80,7 +80,7 @@ impl PlanArgs {
             (None, Some(error)) => PlanGoal::Error(ErrorLimit { error, max_samples, pinned }),
             (None, None) => return Ok(PlanGoal::AsSet),
         };
-        if method.as_scales().is_none() {
+        if method.moves().is_empty() {
             return Err(unplannable("--time and --error plan"));
         }
         Ok(goal)
@@ -89,7 +89,7 @@ impl PlanArgs {
 
 /// Returns the error of a method without a scale of settings, which names the methods that have one.
 fn unplannable(options: &str) -> Failure {
-    let planned = Method::all().filter(|method| method.as_scales().is_some());
+    let planned = Method::all().filter(|method| !method.moves().is_empty());
     let planned: Vec<_> = planned.map(|method| method.name()).collect();
     Failure::usage(anyhow!("{options} settings of --method {} only", planned.join(", ")))
 }

@@ -7,8 +7,8 @@ use glam::{DVec3, Vec3};
 use lightsplat::film::Image;
 use lightsplat::math::Rgb;
 use lightsplat::method::render;
+use lightsplat::method::vpl;
 use lightsplat::method::{DirectBy, Footprints, FoundBy};
-use lightsplat::method::{cache, reconstruction};
 use lightsplat::progress::Control;
 use lightsplat::scene::{Coat, Distribution, Fresnel, Lobe, Material, MaterialId, Reflectance, Scene};
 use lightsplat::stats::Stage;
@@ -19,17 +19,17 @@ use std::sync::atomic::{AtomicBool, Ordering};
 const SIZE: u32 = 96;
 
 /// Records with an error bound as in the paper.
-fn settings(direct: DirectBy, footprints: Footprints) -> cache::Settings {
+fn settings(direct: DirectBy, footprints: Footprints) -> vpl::Settings {
     let mut settings = noiseless_records(20_000);
     settings.cache.direct = direct;
-    settings.cache.cut.epsilon = 0.01;
+    settings.cache.epsilon = 0.01;
     settings.cache.accuracy[1] = 0.3;
     settings.cache.footprints = footprints;
     settings
 }
 
 /// [`settings`] with direct light by records of a higher accuracy: penumbrae are too steep for the default one.
-fn fine_settings(direct: DirectBy, footprints: Footprints) -> cache::Settings {
+fn fine_settings(direct: DirectBy, footprints: Footprints) -> vpl::Settings {
     let mut settings = settings(direct, footprints);
     (settings.cache.accuracy[0], settings.cache.reach[0]) = (0.1, [0.7, 5.0]);
     settings
@@ -38,7 +38,7 @@ fn fine_settings(direct: DirectBy, footprints: Footprints) -> cache::Settings {
 #[test]
 fn cancelling_ends_the_lighting_before_all_is_lit() {
     let world = lit_room();
-    let settings = reconstruction::Settings { spp: 64, ..Default::default() };
+    let settings = vpl::Settings { spp: 64, ..vpl::Settings::reconstruction() };
     let (control, done) = (Control::new(), AtomicBool::new(false));
     let output = std::thread::scope(|scope| {
         scope.spawn(|| {

@@ -7,7 +7,7 @@ use crate::presets::{noiseless_records, per_pixel};
 use glam::{Vec2, Vec3};
 use lightsplat::film::{Image, Layer};
 use lightsplat::math::{Rgb, luminance};
-use lightsplat::method::cache;
+use lightsplat::method::vpl;
 use lightsplat::method::{DirectBy, Footprints, FoundBy};
 use lightsplat::scene::MaterialId;
 use lightsplat::world::Surface;
@@ -17,7 +17,7 @@ use std::sync::OnceLock;
 const SIZE: u32 = 128;
 
 /// Indirect light by records without compensation: the reference clamps as the cache does.
-fn settings(footprints: Footprints) -> cache::Settings {
+fn settings(footprints: Footprints) -> vpl::Settings {
     let mut settings = noiseless_records(30_000);
     settings.cache.footprints = footprints;
     settings.cache.accuracy[1] = 0.3;
@@ -83,7 +83,7 @@ fn quantile(values: &[f32], q: f32) -> f32 {
 ///
 /// Light that leaks from the lit half would be several times as bright as the dark half. The limits lie a little above
 /// the errors of today. They are not derived.
-fn bad_regions(settings: &cache::Settings) -> Vec<&'static str> {
+fn bad_regions(settings: &vpl::Settings) -> Vec<&'static str> {
     let world = divided_room();
     let seen = seen(&world);
     let reference = divided_reference();

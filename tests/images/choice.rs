@@ -5,7 +5,7 @@ use crate::oracle::on_threads;
 use glam::Vec3;
 use lightsplat::film::{Image, Window};
 use lightsplat::math::Rgb;
-use lightsplat::method::{Method, cache, path};
+use lightsplat::method::{Method, path, vpl};
 use lightsplat::progress::Control;
 use lightsplat::scene::{Distribution, Environment, Fresnel, Lobe, Material, Reflectance};
 use lightsplat::session::{Goal, Remark, RenderedFrame};
@@ -75,8 +75,8 @@ fn indirect() -> SceneAndView {
 fn chosen(scene: &SceneAndView, seed: u32, change: impl FnOnce(&mut View)) -> RenderedFrame {
     let (session, mut view) = session(scene.clone());
     change(&mut view);
-    let settings = cache::Settings { seed, ..cache::Settings::default() };
-    let goal = Goal { method: Method::Cache(settings), may_choose: true, ..Goal::default() };
+    let settings = vpl::Settings { seed, ..vpl::Settings::cache() };
+    let goal = Goal { method: Method::Vpl(settings), may_choose: true, ..Goal::default() };
     session.frame(&view, &goal, &Control::new()).unwrap()
 }
 

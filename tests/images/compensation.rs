@@ -6,19 +6,19 @@ use crate::presets::by_records;
 use glam::{DVec3, Vec2, Vec3};
 use lightsplat::film::Image;
 use lightsplat::math::{Rgb, luminance};
-use lightsplat::method::{FoundBy, Output, cache, lightcuts, path, reconstruction};
+use lightsplat::method::{FoundBy, Output, path, vpl};
 
 /// Side of the film in pixels.
 const SIZE: u32 = 64;
 
 /// Images by all methods of indirect light, with compensation or without it.
 fn outputs(world: &WorldAndView, vpls: u32, compensation: bool) -> Vec<(&'static str, Output)> {
-    let records = cache::Settings { spp: 4, compensation, ..by_records(vpls) };
+    let records = vpl::Settings { spp: 4, compensation, ..by_records(vpls) };
     let mut shared = records;
     shared.cache.indirect = FoundBy::Cuts;
     let mut alone = shared;
-    alone.cache.share = false;
-    let mut cuts = lightcuts::Settings { compensation, ..Default::default() };
+    alone.share = false;
+    let mut cuts = vpl::Settings { compensation, ..vpl::Settings::lightcuts() };
     cuts.light.indirect = vpls;
     vec![
         ("shared", rendered(world, &shared)),
@@ -88,7 +88,7 @@ fn surfaces_beside_lamps_are_as_bright_as_paths_make_them() {
     let truth = image(&world, &paths);
     let brightest = |image: &Image| image.pixels.iter().map(|p| p.max_element()).fold(0.0, f32::max);
     let error = |compensation: bool| {
-        let mut settings = reconstruction::Settings { compensation, ..Default::default() };
+        let mut settings = vpl::Settings { compensation, ..vpl::Settings::reconstruction() };
         settings.light.direct = 256;
         settings.light.indirect = 10_000;
         let image = image(&world, &settings);

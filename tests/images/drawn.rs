@@ -6,7 +6,7 @@ use crate::presets::{direct_only, with_vpls};
 use glam::{Vec2, Vec3};
 use lightsplat::film::{Image, Window};
 use lightsplat::math::{Rgb, luminance};
-use lightsplat::method::{Estimand, FoundBy, Method, Renderer, cache, path};
+use lightsplat::method::{Estimand, FoundBy, Method, Renderer, path, vpl};
 use lightsplat::scene::{Coat, DeltaLight, Distribution, Environment, Fresnel, Lobe, Material, Reflectance};
 use lightsplat::session::Session;
 use lightsplat::view::View;
@@ -16,8 +16,8 @@ use std::f32::consts::PI;
 const SEEDS: u32 = 64;
 
 /// The mean of the cache's images over `seeds` seeds.
-fn by_cache(world: &WorldAndView, settings: cache::Settings, seeds: u32) -> Estimate {
-    over_seeds(seeds, |seed| image(world, &cache::Settings { seed, ..settings }))
+fn by_cache(world: &WorldAndView, settings: vpl::Settings, seeds: u32) -> Estimate {
+    over_seeds(seeds, |seed| image(world, &vpl::Settings { seed, ..settings }))
 }
 
 /// The path tracer's estimate, with a seed that [`by_cache`] does not take.
@@ -79,7 +79,7 @@ fn direct_light_is_right_on_the_mean_for_every_kind_of_light() {
         let expected = paths(&world, 1024, Some(2));
         // The whole budget may double the first samples.
         for (extra_samples, seeds) in [(0.9, SEEDS), (1.0, SEEDS / 2)] {
-            let mut settings = cache::Settings { spp: 4, max_depth: Some(2), ..direct_only() };
+            let mut settings = vpl::Settings { spp: 4, max_depth: Some(2), ..direct_only() };
             settings.cache.extra_samples = extra_samples;
             assert_same_mean(&by_cache(&world, settings, seeds), &expected, name);
         }
@@ -103,7 +103,7 @@ fn a_floor_under_a_lamp_a_bulb_and_the_sky_has_their_irradiance() {
     let quarter = 2.0 * a / (1.0 + a * a).sqrt() * (a / (1.0 + a * a).sqrt()).atan();
     let irradiance = 10.0 * 0.8 / 6.25 + (7.0 - 0.8) * 2.0 * quarter + 0.8 * PI;
 
-    let settings = cache::Settings { spp: 256, ..direct_only() };
+    let settings = vpl::Settings { spp: 256, ..direct_only() };
     let Estimate { mean, variance } = by_cache(&world(scene), settings, SEEDS);
     let (mean, variance) = (regions(&mean, 4)[0], regions(&variance, 4)[0] / 16.0);
     let expected = 0.6 / PI * irradiance;
@@ -118,7 +118,7 @@ fn a_single_sample_looks_through_the_centre_of_the_pixel() {
     let world = world(scene);
     let estimand = Estimand::EyeSamples { spp: 1, seed: 0 };
     let settings = path::Settings { spp: 1, max_depth: Some(2), estimand, ..Default::default() };
-    let single = cache::Settings { spp: 1, ..direct_only() };
+    let single = vpl::Settings { spp: 1, ..direct_only() };
     assert_eq!(single.estimand(), estimand);
     // One point light leaves nothing to chance.
     assert_eq!(image(&world, &single), image(&world, &settings));
@@ -213,7 +213,7 @@ fn room_of_balls() -> SceneAndView {
 #[test]
 fn light_from_records_and_cuts_shows_in_chains_as_paths_see_it() {
     let world = world(room_of_balls());
-    let settings = cache::Settings { max_depth: Some(8), ..with_vpls(50_000) };
+    let settings = vpl::Settings { max_depth: Some(8), ..with_vpls(50_000) };
     let Estimate { mean, .. } = by_cache(&world, settings, 4);
     let Estimate { mean: exact, .. } = paths(&world, 1024, Some(8));
     let (worst, total) = (worst_region(&mean, &exact, 8), worst_region(&mean, &exact, 48));
@@ -263,7 +263,7 @@ fn fence() -> SceneAndView {
 fn extra_samples_go_to_edges_and_leave_the_mean_as_it_is() {
     let world = world(fence());
     let settings = |spp, extra_samples| {
-        let mut settings = cache::Settings { spp, max_depth: Some(2), ..direct_only() };
+        let mut settings = vpl::Settings { spp, max_depth: Some(2), ..direct_only() };
         settings.cache.extra_samples = extra_samples;
         settings
     };
@@ -291,8 +291,8 @@ fn extra_samples_go_to_edges_and_leave_the_mean_as_it_is() {
 }
 
 /// The denoised frame's picture; `None` where there is no library.
-fn denoised(session: &Session, view: &View, settings: cache::Settings) -> Option<Image> {
-    let frame = frame(session, view, Method::Cache(settings), true);
+fn denoised(session: &Session, view: &View, settings: vpl::Settings) -> Option<Image> {
+    let frame = frame(session, view, Method::Vpl(settings), true);
     (!lacks_denoiser(&frame)).then_some(frame.film.color)
 }
 
@@ -302,7 +302,7 @@ fn wires_thinner_than_a_pixel_are_not_lost() {
     let settings = with_vpls(20_000);
     let paths = Method::Path(path::Settings { spp: 1024, seed: 9, ..Default::default() });
     let exact = frame(&session, &view, paths, false).film.color;
-    let noisy = frame(&session, &view, Method::Cache(settings), false).film.color;
+    let noisy = frame(&session, &view, Method::Vpl(settings), false).film.color;
     let denoised = denoised(&session, &view, settings);
     for picture in [Some(noisy), denoised].into_iter().flatten() {
         let worst = worst_region(&picture, &exact, 16);
@@ -328,7 +328,7 @@ fn the_bits_of_the_default_do_not_depend_on_threads_denoised_or_not() {
     let run = |threads| {
         on_threads(threads, || {
             let (session, view) = session(room_of_balls());
-            let noisy = frame(&session, &view, Method::Cache(settings), false).film.color;
+            let noisy = frame(&session, &view, Method::Vpl(settings), false).film.color;
             (noisy, denoised(&session, &view, settings))
         })
     };
@@ -342,7 +342,7 @@ fn the_bits_of_the_default_do_not_depend_on_threads_denoised_or_not() {
 fn a_crop_repeats_the_whole_picture_s_direct_light() {
     let world = world(room_of_balls());
     for spp in [1, 5, 16] {
-        let settings = cache::Settings { spp, seed: 3, ..direct_only() };
+        let settings = vpl::Settings { spp, seed: 3, ..direct_only() };
         let whole = image(&world, &settings);
         for [x, y, width, height] in [[0, 0, 48, 20], [5, 30, 19, 3], [17, 13, 1, 1], [31, 7, 17, 41]] {
             let window = Window { offset: [x, y], width, height, ..world.view.window };

@@ -4,7 +4,7 @@ use crate::kit::*;
 use crate::oracle::{assert_means_within, mean, sum};
 use glam::{DVec3, Vec2, Vec3};
 use lightsplat::math::Rgb;
-use lightsplat::method::{Renderer, cache, lightcuts, path, photon_cache, reconstruction};
+use lightsplat::method::{Renderer, path, vpl};
 use lightsplat::scene::{DeltaLight, Distribution, Environment, Lobe, Material, MaterialId, Mesh, Parameter};
 
 /// A room seen from inside, dark but for what comes through a hole in its wall towards +x, from a lamp in another room.
@@ -93,7 +93,7 @@ pub(crate) fn by_paths(world: &WorldAndView) -> DVec3 {
 pub(crate) fn by_default(world: &WorldAndView) -> DVec3 {
     const SEEDS: u32 = 4;
     let spp = spp_of(world, (1 << 17) / SEEDS);
-    let of_seed = |seed| mean_by(world, &cache::Settings { spp, seed, ..Default::default() });
+    let of_seed = |seed| mean_by(world, &vpl::Settings { spp, seed, ..vpl::Settings::cache() });
     (0..SEEDS).map(of_seed).sum::<DVec3>() / f64::from(SEEDS)
 }
 
@@ -196,7 +196,7 @@ fn a_point_of_light_shines_through_a_ball_as_a_small_lamp_does() {
         let intensity = radiance * (std::f32::consts::PI * RADIUS * RADIUS);
         scene.lights.push(DeltaLight::Point { position, intensity });
     });
-    let stats = rendered(&point, &cache::Settings { spp: 4, ..Default::default() }).stats;
+    let stats = rendered(&point, &vpl::Settings { spp: 4, ..vpl::Settings::cache() }).stats;
     let percent = sum(&stats, "Light/by photons through glass or by mirrors [%]");
     assert!(percent.is_some_and(|percent| percent > 1.0 && percent < 50.0), "{percent:?}");
     let found = by_default(&point);
@@ -250,8 +250,8 @@ fn the_sun_comes_through_a_thin_pane_by_its_transmittance() {
     let one = 0.5 * (s * s + p * p);
     let expected = DVec3::new(0.9, 0.6, 0.3) * (1.0 - 2.0 * one / (1.0 + one));
     assert_means_within(1e-3, share, expected, "paths");
-    let by_cache = cache::Settings { spp: 256, max_depth: Some(2), ..Default::default() };
-    let behind = cache::Settings { max_depth: Some(3), ..by_cache };
+    let by_cache = vpl::Settings { spp: 256, max_depth: Some(2), ..vpl::Settings::cache() };
+    let behind = vpl::Settings { max_depth: Some(3), ..by_cache };
     let share = mean_by(&hung, &behind) / mean_by(&open, &by_cache);
     assert_means_within(1e-3, share, expected, "cache");
 }
@@ -284,9 +284,9 @@ pub(crate) fn assert_methods_agree(world: &WorldAndView, spp: u32, what: &str) {
     const NOISE: f64 = 0.05;
     let exact = by_paths(world);
     let agrees = |found, name: &str| assert_means_within(NOISE, found, exact, &format!("{what}, {name}"));
-    agrees(mean_by(world, &lightcuts::Settings { spp, ..Default::default() }), "lightcuts");
-    agrees(mean_by(world, &reconstruction::Settings { spp, ..Default::default() }), "reconstruction");
-    agrees(mean_by(world, &photon_cache::Settings { spp, ..Default::default() }), "photon-cache");
+    agrees(mean_by(world, &vpl::Settings { spp, ..vpl::Settings::lightcuts() }), "lightcuts");
+    agrees(mean_by(world, &vpl::Settings { spp, ..vpl::Settings::reconstruction() }), "reconstruction");
+    agrees(mean_by(world, &vpl::Settings { spp, ..vpl::Settings::photon_cache() }), "photon-cache");
 }
 
 #[test]

@@ -5,7 +5,7 @@ use crate::oracle::regions;
 use glam::Vec3;
 use lightsplat::film::Image;
 use lightsplat::math::{Rgb, luminance};
-use lightsplat::method::{Renderer, cache, lightcuts, path, photon_cache, reconstruction};
+use lightsplat::method::{Renderer, path, vpl};
 use lightsplat::scene::{Distribution, Fresnel, Lobe, Material, Reflectance};
 
 /// A wall that a lamp lights by a plate of brushed metal alone: the lamp shines away from the wall.
@@ -52,9 +52,9 @@ fn brushed_metal_lights_a_wall_where_paths_have_it() {
         let agrees = |settings: &dyn Renderer, most, what| {
             assert_as_by_paths(&exact, &image(&world, settings), most, what)
         };
-        agrees(&cache::Settings { spp: 128, ..Default::default() }, 0.03, "cache");
-        agrees(&lightcuts::Settings::default(), 0.1, "lightcuts");
-        agrees(&reconstruction::Settings::default(), 0.1, "reconstruction");
-        agrees(&photon_cache::Settings::default(), 0.1, "photon-cache");
+        agrees(&vpl::Settings { spp: 128, ..vpl::Settings::cache() }, 0.03, "cache");
+        agrees(&vpl::Settings::lightcuts(), 0.1, "lightcuts");
+        agrees(&vpl::Settings::reconstruction(), 0.1, "reconstruction");
+        agrees(&vpl::Settings::photon_cache(), 0.1, "photon-cache");
     }
 }

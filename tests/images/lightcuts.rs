@@ -6,7 +6,7 @@ use glam::Vec3;
 use lightsplat::film::{Image, Window};
 use lightsplat::math::Rgb;
 use lightsplat::method::LightPassSettings;
-use lightsplat::method::lightcuts::Settings;
+use lightsplat::method::vpl::Settings;
 use lightsplat::method::{path, render};
 use lightsplat::progress::Control;
 use lightsplat::scene::{DeltaLight, Environment, Lobe, Material, Scene};
@@ -14,7 +14,7 @@ use lightsplat::view::View;
 
 /// Settings with few lights: `indirect` virtual ones, and 512 points on emitters.
 fn small(indirect: u32) -> Settings {
-    Settings { light: LightPassSettings { direct: 512, indirect, seed: 0 }, ..Settings::default() }
+    Settings { light: LightPassSettings { direct: 512, indirect, seed: 0 }, ..Settings::lightcuts() }
 }
 
 /// The image by `spp` paths per pixel.
@@ -50,7 +50,7 @@ fn lights_without_a_surface_are_exact() {
     ];
     for light in lights {
         let world = floor_under(|scene| scene.lights.push(light));
-        let (a, b) = (image(&world, &Settings { spp: 64, ..Settings::default() }), reference(&world, 64));
+        let (a, b) = (image(&world, &Settings { spp: 64, ..Settings::lightcuts() }), reference(&world, 64));
         for (a, b) in a.pixels.iter().zip(&b.pixels) {
             // Both average over the same positions of a pixel.
             assert!((*a - *b).abs().max_element() <= 0.01 * b.max_element() + 1e-6, "{light:?}: {a} {b}");
@@ -61,7 +61,7 @@ fn lights_without_a_surface_are_exact() {
 #[test]
 fn a_floor_under_a_uniform_sky_reflects_its_albedo() {
     let world = floor_under(|scene| scene.environment = Some(Environment::Constant(Rgb::new(1.0, 2.0, 0.5))));
-    for pixel in &image(&world, &Settings::default()).pixels {
+    for pixel in &image(&world, &Settings::lightcuts()).pixels {
         let error = (*pixel / (0.5 * Rgb::new(1.0, 2.0, 0.5)) - Rgb::ONE).abs().max_element();
         assert!(error < 0.03, "{pixel}");
     }
@@ -82,7 +82,7 @@ fn pictures_agree_with_path_tracing() {
         let name = format!("{ball:?}");
         let world = room_with_ball(ball);
         let light = LightPassSettings { direct: 2048, indirect: 60_000, seed: 0 };
-        let image = image(&world, &Settings { spp: 4, light, ..Settings::default() });
+        let image = image(&world, &Settings { spp: 4, light, ..Settings::lightcuts() });
         let ratio = mean(&image) / mean(&reference(&world, 256));
         // Clamping in the creases may lose a little; nothing may be gained.
         assert!(ratio.min_element() > 0.96 && ratio.max_element() < 1.02, "{name}: {ratio}");
@@ -96,7 +96,7 @@ fn the_eye_sees_through_mirrors() {
     let mut scene = staged(world);
     scene.materials[0] = mirror();
     let world = crate::kit::world(scene);
-    for pixel in &image(&world, &Settings::default()).pixels {
+    for pixel in &image(&world, &Settings::lightcuts()).pixels {
         assert!((*pixel - sky).abs().max_element() < 1e-5, "{pixel}");
     }
 }
@@ -141,14 +141,14 @@ fn a_crop_repeats_the_whole_pictures_pixels() {
 #[test]
 fn nothing_to_see_and_nothing_that_shines_is_black() {
     let void = world(scene(camera(Vec3::ZERO, Vec3::Z, 1.0), [3, 1]));
-    let is_black = |world| image(world, &Settings::default()).pixels.iter().all(|p| *p == Rgb::ZERO);
+    let is_black = |world| image(world, &Settings::lightcuts()).pixels.iter().all(|p| *p == Rgb::ZERO);
     assert!(is_black(&void) && is_black(&floor_under(|_| ())));
     let only_light = {
         let mut s = scene(camera(Vec3::ZERO, Vec3::Z, 1.0), [3, 1]);
         s.lights.push(DeltaLight::Point { position: Vec3::X, intensity: Rgb::ONE });
         world(s)
     };
-    rendered(&only_light, &Settings::default());
+    rendered(&only_light, &Settings::lightcuts());
 }
 
 #[test]
@@ -156,7 +156,7 @@ fn a_cancelled_picture_says_so() {
     let world = room_with_ball(None);
     let control = Control::new();
     control.cancel();
-    let output = render(&world, &world.view, &Settings::default(), &control);
+    let output = render(&world, &world.view, &Settings::lightcuts(), &control);
     assert!(!output.complete);
     assert_eq!(output.color.pixels.len(), 32 * 32);
 }
@@ -175,7 +175,7 @@ fn polished_metal_is_followed_from_the_eye() {
         scene.lights.push(DeltaLight::Point { position: Vec3::new(0.5, 0.5, 0.7), intensity: Rgb::ONE });
         let world = world(scene);
         let expected = mean(&reference(&world, 256));
-        let found = mean(&image(&world, &Settings { spp: 16, ..Settings::default() }));
+        let found = mean(&image(&world, &Settings { spp: 16, ..Settings::lightcuts() }));
         assert_means_within(0.03, found, expected, &format!("α {alpha}"));
     }
 }
@@ -186,6 +186,7 @@ fn very_many_eye_rays_are_averaged_in_parts() {
         let intensity = Rgb::new(1.0, 2.0, 3.0);
         scene.lights.push(DeltaLight::Point { position: Vec3::new(0.5, 1.0, 0.0), intensity });
     });
-    let [few, many] = [1024, 1500].map(|spp| mean(&image(&world, &Settings { spp, ..Settings::default() })));
+    let [few, many] =
+        [1024, 1500].map(|spp| mean(&image(&world, &Settings { spp, ..Settings::lightcuts() })));
     assert_means_within(1e-3, few, many, "1024 and 1500 samples");
 }

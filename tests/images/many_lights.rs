@@ -5,8 +5,8 @@ use crate::oracle::{mean_luminance, mean_square};
 use crate::presets::direct_only;
 use glam::Vec3;
 use lightsplat::math::Rgb;
-use lightsplat::method::cache;
 use lightsplat::method::path::Settings;
+use lightsplat::method::vpl;
 use lightsplat::scene::{DeltaLight, Environment};
 
 /// Number of rooms along each side of the building.
@@ -81,7 +81,7 @@ fn noise_hardly_grows_with_the_number_of_lamps() {
 fn lamps_of_other_rooms_are_hardly_sampled_once_learned() {
     let world = building(900, 96);
     let reference = image(&world, &Settings { spp: 512, max_depth: Some(2), ..Settings::default() });
-    let mut by_cache = cache::Settings { spp: 16, max_depth: Some(2), seed: 5, ..direct_only() };
+    let mut by_cache = vpl::Settings { spp: 16, max_depth: Some(2), seed: 5, ..direct_only() };
     by_cache.cache.extra_samples = 0.0;
     let settings = Settings { spp: 16, max_depth: Some(2), seed: 5, ..Settings::default() };
     let [learned, plain] = [image(&world, &by_cache), image(&world, &settings)];

@@ -5,9 +5,7 @@ use crate::oracle::{count, on_threads};
 use crate::presets::by_records;
 use glam::Vec3;
 use lightsplat::math::Rgb;
-use lightsplat::method::{
-    LightPassSettings, OccluderCacheSettings, Output, ShadowSettings, cache, lightcuts,
-};
+use lightsplat::method::{LightPassSettings, OccluderCacheSettings, Output, ShadowSettings, vpl};
 
 const LIGHT: LightPassSettings = LightPassSettings { direct: 512, indirect: 10_000, seed: 0 };
 
@@ -44,7 +42,7 @@ fn lightcuts_give_the_same_bits_with_it_and_without_on_any_number_of_threads() {
     for share in [true, false] {
         let mut first: Option<Output> = None;
         for shadows in uses() {
-            let settings = lightcuts::Settings { light: LIGHT, share, shadows, ..Default::default() };
+            let settings = vpl::Settings { light: LIGHT, share, shadows, ..vpl::Settings::lightcuts() };
             let [one, three] = [1, 3].map(|threads| on_threads(threads, || rendered(&world, &settings)));
             assert!(one.color == three.color && one.stats.counters().eq(three.stats.counters()));
             // Where cuts are shared, few rays are single.
@@ -63,8 +61,8 @@ fn the_radiance_cache_gives_the_same_bits_with_it_and_without_on_any_number_of_t
     for share in [true, false] {
         let mut first = None;
         for shadows in uses() {
-            let mut settings = cache::Settings { light: LIGHT, ..by_records(LIGHT.indirect) };
-            (settings.cache.share, settings.cache.shadows) = (share, shadows);
+            let mut settings = vpl::Settings { light: LIGHT, ..by_records(LIGHT.indirect) };
+            (settings.share, settings.shadows) = (share, shadows);
             let [one, three] = [1, 3].map(|threads| on_threads(threads, || rendered(&world, &settings)));
             assert!(one.color == three.color && one.stats.counters().eq(three.stats.counters()));
             let asks = !share && shadows.cached == Some(true);

@@ -6,12 +6,18 @@ use glam::{DVec3, Vec3};
 use lightsplat::film::Image;
 use lightsplat::math::{Rgb, luminance};
 use lightsplat::method::path;
-use lightsplat::method::photon_cache::Settings;
+use lightsplat::method::vpl::{GatheringSettings, Settings};
 
 const SIZE: u32 = 64;
 
 fn small() -> Settings {
-    Settings { photons: 30_000, rays: 500, own_rays: 64, ..Settings::default() }
+    with(30_000, 500)
+}
+
+/// Settings with so many photons, and so many rays per record.
+fn with(photons: u32, rays: u32) -> Settings {
+    let gathering = GatheringSettings { photons, rays, own_rays: 64, ..Default::default() };
+    Settings { gathering, ..Settings::photon_cache() }
 }
 
 /// A room with a box on its floor.
@@ -44,7 +50,7 @@ fn it_converges_to_the_path_tracer_as_photons_and_rays_grow() {
     let reference = blocks(&image(&world, &path::Settings { spp: 1024, ..Default::default() }));
     let mean = reference.iter().sum::<f64>() / reference.len() as f64;
     let errors = [(3_000, 100), (100_000, 2000)].map(|(photons, rays)| {
-        let found = blocks(&image(&world, &Settings { photons, rays, spp: 4, ..small() }));
+        let found = blocks(&image(&world, &Settings { spp: 4, ..with(photons, rays) }));
         let bias = found.iter().sum::<f64>() / reference.len() as f64 / mean - 1.0;
         let squares = found.iter().zip(&reference).map(|(a, b)| (a - b) * (a - b)).sum::<f64>();
         ((squares / reference.len() as f64).sqrt() / mean, bias)
@@ -56,7 +62,7 @@ fn it_converges_to_the_path_tracer_as_photons_and_rays_grow() {
 /// Tests that radiance is emitted / (1 - albedo) everywhere.
 #[test]
 fn the_furnace_is_white() {
-    let image = image(&own("furnace", SIZE), &Settings { photons: 100_000, ..small() });
+    let image = image(&own("furnace", SIZE), &with(100_000, 500));
     assert_means_within(0.01, mean(&image), DVec3::splat(0.8), "furnace");
     let mut errors: Vec<f32> =
         image.pixels.iter().map(|p| (*p / 0.8 - Rgb::ONE).abs().max_element()).collect();

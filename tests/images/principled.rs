@@ -4,7 +4,7 @@ use crate::glass::{NOISE, by_default, by_paths, mean_by};
 use crate::kit::*;
 use crate::oracle::assert_means_within;
 use lightsplat::math::Rgb;
-use lightsplat::method::{lightcuts, photon_cache};
+use lightsplat::method::vpl;
 use lightsplat::scene::{Material, Principled, Reflectance};
 
 /// A room with a ball of varnished paint, of metal, of frosted glass, and of leaves, on walls that are
@@ -61,9 +61,9 @@ fn the_default_agrees_with_paths() {
 fn cuts_and_photons_agree_with_paths() {
     for (world, what) in rooms() {
         let exact = by_paths(&world);
-        let cuts = lightcuts::Settings { spp: 64, ..Default::default() };
+        let cuts = vpl::Settings { spp: 64, ..vpl::Settings::lightcuts() };
         assert_means_within(0.03, mean_by(&world, &cuts), exact, &format!("{what}, lightcuts"));
-        let photons = photon_cache::Settings { spp: 64, ..Default::default() };
+        let photons = vpl::Settings { spp: 64, ..vpl::Settings::photon_cache() };
         assert_means_within(0.03, mean_by(&world, &photons), exact, &format!("{what}, photon-cache"));
     }
 }
@@ -72,8 +72,8 @@ fn cuts_and_photons_agree_with_paths() {
 fn cuts_and_photons_agree_with_paths_in_a_painted_room() {
     let (world, what) = rooms().swap_remove(0);
     let exact = by_paths(&world);
-    let cuts = lightcuts::Settings { spp: 4, ..Default::default() };
+    let cuts = vpl::Settings { spp: 4, ..vpl::Settings::lightcuts() };
     assert_means_within(0.03, mean_by(&world, &cuts), exact, &format!("{what}, lightcuts"));
-    let photons = photon_cache::Settings { spp: 4, ..Default::default() };
+    let photons = vpl::Settings { spp: 4, ..vpl::Settings::photon_cache() };
     assert_means_within(0.03, mean_by(&world, &photons), exact, &format!("{what}, photon-cache"));
 }

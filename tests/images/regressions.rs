@@ -2,19 +2,19 @@
 
 use crate::kit::*;
 use crate::oracle::{assert_rms_below, brightest};
-use lightsplat::method::{Output, cache, lightcuts, photon_cache, reconstruction};
+use lightsplat::method::{Output, vpl};
 
 /// A coarse cut gave a point the light of a whole cluster whose representative lay next to it: bright specks, and an
 /// RMS error of 1176 %. Today a cluster that gives more than a quarter of the light is split, and the error is 12 %.
 #[test]
 fn coarse_cuts_leave_no_bright_specks() {
     let world = own("knot", 48);
-    let mut fine = lightcuts::Settings { spp: 1, ..Default::default() };
+    let mut fine = vpl::Settings { spp: 1, ..vpl::Settings::lightcuts() };
     fine.light.indirect = 75_000;
     let reference = image(&world, &fine);
     let mut coarse = fine;
     (coarse.cut.epsilon, coarse.cut.max_cut) = (0.32, 1250);
-    let mut shared = reconstruction::Settings { spp: 1, patches: 512, ..Default::default() };
+    let mut shared = vpl::Settings { spp: 1, patches: 512, ..vpl::Settings::reconstruction() };
     (shared.light, shared.cut) = (coarse.light, coarse.cut);
     for (name, image) in [("lightcuts", image(&world, &coarse)), ("reconstruction", image(&world, &shared))] {
         assert_rms_below(0.25, &image, &reference, name);
@@ -29,7 +29,7 @@ fn coarse_cuts_leave_no_bright_specks() {
 fn compensation_makes_no_fireflies_in_creases() {
     let world = own("cornell", 48);
     let with = |compensation| {
-        let mut settings = reconstruction::Settings { spp: 1, compensation, ..Default::default() };
+        let mut settings = vpl::Settings { spp: 1, compensation, ..vpl::Settings::reconstruction() };
         settings.light.indirect = 3000;
         image(&world, &settings)
     };
@@ -42,9 +42,10 @@ fn compensation_makes_no_fireflies_in_creases() {
 fn every_method_with_records_returns_the_layers_of_inspection() {
     let world = own("cornell", 48);
     let layers = |output: Output| output.extra.iter().map(|layer| layer.name.clone()).collect::<Vec<_>>();
-    let mut records = cache::Settings { spp: 1, inspect: true, ..Default::default() };
+    let mut records = vpl::Settings { spp: 1, inspect: true, ..vpl::Settings::cache() };
     records.light.indirect = 3000;
-    let photons = photon_cache::Settings { spp: 1, inspect: true, photons: 3000, ..Default::default() };
+    let mut photons = vpl::Settings { spp: 1, inspect: true, ..vpl::Settings::photon_cache() };
+    photons.gathering.photons = 3000;
     let found = [layers(rendered(&world, &records)), layers(rendered(&world, &photons))];
     for layers in found {
         for name in ["direct", "indirect", "records", "weights"] {

@@ -5,7 +5,7 @@ use crate::oracle::{against, relative_rms};
 use glam::{Vec2, Vec3};
 use lightsplat::film::Image;
 use lightsplat::math::Rgb;
-use lightsplat::method::{lightcuts, path};
+use lightsplat::method::{path, vpl};
 use lightsplat::scene::{Distribution, Environment, Fresnel, Lobe, Material, Reflectance};
 
 /// Side of the film in pixels.
@@ -36,7 +36,7 @@ fn by_paths(world: &WorldAndView, spp: u32) -> Image {
 }
 
 fn by_cuts(world: &WorldAndView) -> Image {
-    image(world, &lightcuts::Settings { spp: 4, ..Default::default() })
+    image(world, &vpl::Settings { spp: 4, ..vpl::Settings::lightcuts() })
 }
 
 /// Asserts that the image is as bright as by path tracing, and that its noise is at most `most` times the noise of as

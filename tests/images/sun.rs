@@ -6,7 +6,7 @@ use crate::oracle::assert_means_within;
 use glam::Vec3;
 use lightsplat::film::Image;
 use lightsplat::math::{Rgb, luminance};
-use lightsplat::method::{cache, lightcuts, path, photon_cache, reconstruction};
+use lightsplat::method::{path, vpl};
 use lightsplat::scene::{DistantDisc, Environment};
 
 /// A sun over +x, of the true one's size, and its direction.
@@ -36,10 +36,10 @@ fn all_methods_find_the_sun_through_a_pane() {
     let world = sunny_room();
     let exact = mean_by(&world, &path::Settings { spp: 2048, ..Default::default() });
     let found = [
-        ("cache", mean_by(&world, &cache::Settings { spp: 256, ..Default::default() })),
-        ("lightcuts", mean_by(&world, &lightcuts::Settings { spp: 16, ..Default::default() })),
-        ("reconstruction", mean_by(&world, &reconstruction::Settings { spp: 16, ..Default::default() })),
-        ("photon-cache", mean_by(&world, &photon_cache::Settings { spp: 16, ..Default::default() })),
+        ("cache", mean_by(&world, &vpl::Settings { spp: 256, ..vpl::Settings::cache() })),
+        ("lightcuts", mean_by(&world, &vpl::Settings { spp: 16, ..vpl::Settings::lightcuts() })),
+        ("reconstruction", mean_by(&world, &vpl::Settings { spp: 16, ..vpl::Settings::reconstruction() })),
+        ("photon-cache", mean_by(&world, &vpl::Settings { spp: 16, ..vpl::Settings::photon_cache() })),
     ];
     for (name, found) in found {
         assert_means_within(0.02, found, exact, name);
@@ -61,7 +61,7 @@ fn shadows_of_a_wide_sun_are_soft() {
     let luminances = |image: Image| image.pixels.iter().map(|p| luminance(*p)).collect::<Vec<f32>>();
     let settings = path::Settings { spp: 4096, max_depth: Some(2), ..Default::default() };
     let by_paths = luminances(image(&scene, &settings));
-    let mut settings = lightcuts::Settings { spp: 64, ..Default::default() };
+    let mut settings = vpl::Settings { spp: 64, ..vpl::Settings::lightcuts() };
     settings.light.indirect = 0;
     let by_cuts = luminances(image(&scene, &settings));
     let (bright, dark) = (by_paths[0].max(by_paths[63]), by_paths[0].min(by_paths[63]));

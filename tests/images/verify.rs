@@ -7,7 +7,7 @@ use lightsplat::film::metrics::{rel_mse, rel_mse_of_variance, relative_error_map
 use lightsplat::film::{Image, Window};
 use lightsplat::math::Rgb;
 use lightsplat::method::path::{PixelPaths, PixelSampling, RayCounts, pixel_means};
-use lightsplat::method::{Estimand, Family, Method, cache, lightcuts, path, reconstruction};
+use lightsplat::method::{Estimand, Family, Method, path, vpl};
 use lightsplat::progress::Control;
 use lightsplat::scene::PixelFilter;
 use lightsplat::verify::{Estimate, Verified, VerifySettings, verify};
@@ -102,7 +102,7 @@ fn edges_count_as_errors_of_pixels_but_not_of_eye_samples() {
         scene.meshes.push(emitting(quad(corner, Vec3::X * 0.2, slanted, black), Rgb::ONE));
     }
     let world = world(scene);
-    let one = lightcuts::Settings { spp: 1, ..Default::default() };
+    let one = vpl::Settings { spp: 1, ..vpl::Settings::lightcuts() };
     let by_one = image(&world, &one);
     let at = |estimand: Estimand| {
         check(&world, &by_one, &VerifySettings { pixels: 700, estimand, ..VerifySettings::default() })
@@ -116,7 +116,7 @@ fn edges_count_as_errors_of_pixels_but_not_of_eye_samples() {
 
     // Errors at several eye samples with positions of their own are found as well, and differ from those of
     // another seed.
-    let four = lightcuts::Settings { spp: 4, seed: 3, ..Default::default() };
+    let four = vpl::Settings { spp: 4, seed: 3, ..vpl::Settings::lightcuts() };
     let by_four = image(&world, &four);
     let at = |estimand: Estimand| {
         check(&world, &by_four, &VerifySettings { pixels: 700, estimand, ..VerifySettings::default() })
@@ -232,13 +232,13 @@ fn intervals_cover_the_true_error_at_least_nine_times_in_ten() {
     let (mut covered, mut trials) = ([0; 3], 0);
     for name in ["cornell", "knot", "nave", "kitchen", "apartment"] {
         let world = own(name, 64);
-        let cached = reconstruction::Settings::default();
+        let cached = vpl::Settings::reconstruction();
         let eye = Estimand::EyeSamples { spp: cached.spp, seed: cached.seed };
         let mut few = cached;
         (few.light.indirect, few.cut.epsilon) = (20_000, 0.04);
-        let cuts = lightcuts::Settings { family: Family::default(), ..Default::default() };
+        let cuts = vpl::Settings { family: Family::default(), ..vpl::Settings::lightcuts() };
         let few_paths = path::Settings { spp: 64, ..Default::default() };
-        let by_default = cache::Settings::default();
+        let by_default = vpl::Settings::cache();
         let pairs = match name {
             "cornell" | "kitchen" => vec![
                 ("cache", image(&world, &by_default), Estimand::Pixels),
@@ -302,12 +302,12 @@ mod study_of_default {
     #[test]
     #[ignore = "a study: minutes of path tracing"]
     fn intervals_cover_the_error_of_the_default_noisy_and_denoised() {
-        let settings = cache::Settings::default();
+        let settings = vpl::Settings::cache();
         let mut scene = staged(lit_room());
         scene.max_depth = Some(6);
         let (session, view) = session(scene);
-        let noisy = frame(&session, &view, Method::Cache(settings), false).film.color;
-        let denoised = frame(&session, &view, Method::Cache(settings), true);
+        let noisy = frame(&session, &view, Method::Vpl(settings), false).film.color;
+        let denoised = frame(&session, &view, Method::Vpl(settings), true);
         let world = WorldAndView { world: session.world, view };
         // With 4096 paths their own noise is part of the error: they cover 70 of 80, with these 75.
         let references = references(&world, Estimand::Pixels, 32768);

@@ -5,7 +5,7 @@ use crate::oracle::{against, count as counted, on_threads};
 use crate::presets::{noiseless_records, per_pixel, with_vpls};
 use glam::Vec3;
 use lightsplat::film::metrics::{Variances, compare};
-use lightsplat::method::{Method, cache, path};
+use lightsplat::method::{Method, path, vpl};
 use lightsplat::progress::Control;
 use lightsplat::session::{Goal, RenderedFrame};
 use lightsplat::view::View;
@@ -26,7 +26,7 @@ fn room() -> (SceneAndView, Vec<View>) {
 }
 
 /// Settings whose images have no noise, so that they can be compared with lightcuts per pixel.
-fn settings() -> cache::Settings {
+fn settings() -> vpl::Settings {
     noiseless_records(20_000)
 }
 
@@ -37,7 +37,7 @@ fn count(frame: &RenderedFrame, name: &str) -> u64 {
 }
 
 fn goal() -> Goal {
-    Goal { method: Method::Cache(settings()), ..Goal::default() }
+    Goal { method: Method::Vpl(settings()), ..Goal::default() }
 }
 
 /// [`goal`] with half the least radius. Walks double it, and in so small an image it decides how many records there
@@ -45,7 +45,7 @@ fn goal() -> Goal {
 fn goal_of_walk() -> Goal {
     let mut settings = settings();
     settings.cache.reach[1][0] *= 0.5;
-    Goal { method: Method::Cache(settings), ..Goal::default() }
+    Goal { method: Method::Vpl(settings), ..Goal::default() }
 }
 
 /// Errors of the last frame of a walk, and alone, with a seed of the lights.
@@ -54,9 +54,7 @@ fn errors_of_the_last_frame(seed: u32) -> [f32; 2] {
     let (walked, _) = session(scene.clone());
     let (alone, _) = session(scene.clone());
     let seeded = |goal: Goal| match goal.method {
-        Method::Cache(settings) => {
-            Goal { method: Method::Cache(cache::Settings { seed, ..settings }), ..goal }
-        }
+        Method::Vpl(settings) => Goal { method: Method::Vpl(vpl::Settings { seed, ..settings }), ..goal },
         _ => goal,
     };
     let mut walk = Walk::new(&walked, seeded(goal_of_walk()), RetentionLimits::default());
@@ -77,7 +75,7 @@ fn errors_of_the_last_frame(seed: u32) -> [f32; 2] {
     // Views differ little, so that each alone has about as many records as the last.
     let all = (FRAMES as u64 - 1) * count(&same, "Cache/records, indirect");
     assert!(new * 4 < all, "{new} new records in the walk, {all} alone");
-    let like = cache::Settings { seed, ..settings() };
+    let like = vpl::Settings { seed, ..settings() };
     let reference = image(&world(SceneAndView { view, ..scene }), &per_pixel(&like));
     let (mean, error) = against(&frame.film.color, &reference);
     let (mean_alone, error_alone) = against(&same.film.color, &reference);
@@ -145,7 +143,7 @@ fn a_view_seen_twice_has_no_new_records_and_the_same_light() {
 fn sampled() -> Goal {
     let mut settings = with_vpls(20_000);
     settings.cache.least_cell = 8;
-    Goal { method: Method::Cache(settings), ..Goal::default() }
+    Goal { method: Method::Vpl(settings), ..Goal::default() }
 }
 
 #[test]

@@ -65,8 +65,6 @@ pub trait Settings {
 ///         probe_rays: u32 = 128 => [.range(1.0, 4096.0).scaled(&UP)];
 ///         /// A group of settings.
 ///         cut: CutSettings = CutSettings::default() => [group];
-///         /// A group without some of its settings.
-///         light: LightPassSettings = LightPassSettings::default() => [group without ["vpls"]];
 ///         /// A setting shared with other structs.
 ///         share: bool = true => [is SHARE];
 ///         /// A field that is no setting.
@@ -75,12 +73,12 @@ pub trait Settings {
 /// }
 /// ```
 ///
-/// `[at field ...]` visits a field of the field.
+/// `in "Heading" of preset` visits those settings alone whose key the field `preset` has, by its function `has`.
 #[macro_export]
 macro_rules! settings {
     (
         $(#[doc = $about:literal])+
-        pub struct $Name:ident $(in $heading:literal)? {
+        pub struct $Name:ident $(in $heading:literal $(of $preset:ident)?)? {
             $($(#[doc = $doc:literal])+ $field:ident: $Type:ty = $default:expr $(=> [$($how:tt)*])?;)*
         }
     ) => {
@@ -100,6 +98,14 @@ macro_rules! settings {
             fn each(&mut self, each: $crate::setting::Each) {
                 #[allow(dead_code)]
                 const HEADING: &str = concat!("" $(, $heading)?);
+                $($(
+                    let preset = self.$preset;
+                    let each: $crate::setting::Each = &mut |spec, value| {
+                        if preset.has(spec.key) {
+                            each(spec, value)
+                        }
+                    };
+                )?)?
                 $($crate::setting::visit!(self each HEADING $field [$($doc)+] $([$($how)*])?);)*
             }
         }
@@ -113,20 +119,9 @@ macro_rules! visit {
     ($s:ident $each:ident $heading:ident $field:ident $doc:tt [group]) => {
         $crate::setting::Settings::each(&mut $s.$field, $each)
     };
-    ($s:ident $each:ident $heading:ident $field:ident $doc:tt [group without $left_out:tt]) => {
-        $crate::setting::Settings::each(&mut $s.$field, &mut |spec, value| {
-            if !$left_out.contains(&spec.key) {
-                $each(spec, value)
-            }
-        })
-    };
     ($s:ident $each:ident $heading:ident $field:ident $doc:tt [is $SPEC:path]) => {
         $each(&$SPEC, &mut $s.$field)
     };
-    ($s:ident $each:ident $heading:ident $field:ident $doc:tt [at $part:ident $($build:tt)*]) => {{
-        static SPEC: $crate::setting::Spec = $crate::setting::visit!(@spec $heading $field $doc) $($build)*;
-        $each(&SPEC, &mut $s.$field.$part)
-    }};
     ($s:ident $each:ident $heading:ident $field:ident $doc:tt [$($build:tt)*]) => {{
         static SPEC: $crate::setting::Spec = $crate::setting::visit!(@spec $heading $field $doc) $($build)*;
         $each(&SPEC, &mut $s.$field)

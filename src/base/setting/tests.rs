@@ -25,13 +25,27 @@ settings! {
     }
 }
 
+/// A choice of settings.
+#[derive(Clone, Copy, Debug)]
+pub struct Preset {
+    lacks: &'static str,
+}
+
+impl Preset {
+    fn has(self, key: &str) -> bool {
+        key != self.lacks
+    }
+}
+
 settings! {
     /// Settings of the whole.
-    pub struct Whole {
+    pub struct Whole in "" of preset {
+        /// Settings that apply.
+        preset: Preset = Preset { lacks: "probe_rays" };
         /// The part.
-        part: Part = Part { share: 0.5, ..Part::default() } => [group without ["probe_rays"]];
-        /// Another.
-        other: Part = Part::default() => [at probe_rays .named("rays").range(1.0, 4096.0)];
+        part: Part = Part { share: 0.5, ..Part::default() } => [group];
+        /// Rays of another part.
+        rays: u32 = 128 => [.range(1.0, 4096.0)];
         /// Colour of the whole.
         colour: Colour = Colour::Green => [];
         /// Least and largest.
@@ -103,10 +117,7 @@ fn what_is_shown_is_read_back_and_what_makes_no_sense_is_refused() {
         assert_eq!(whole.set(key, text), Ok(true));
     }
     assert_eq!(whole.reach, [[2.0, 3.0]; 2]);
-    assert_eq!(
-        (whole.other.probe_rays, whole.most, whole.fast, whole.bound),
-        (16, Some(4), Some(false), None)
-    );
+    assert_eq!((whole.rays, whole.most, whole.fast, whole.bound), (16, Some(4), Some(false), None));
 }
 
 #[test]
@@ -116,7 +127,7 @@ fn parsed_values_are_set_where_the_type_is_the_same() {
     assert_eq!(format!("{rays:?}"), "16");
     assert!(whole.parse("nothing", "16").unwrap().is_none() && whole.parse("rays", "0").is_err());
     let mut other = Whole::default();
-    assert!(other.assign("rays", &rays) && other.other.probe_rays == 16);
+    assert!(other.assign("rays", &rays) && other.rays == 16);
     let before = all(&mut other);
     assert!(
         !other.assign("nothing", &rays) && !other.assign("colour", &rays) && !other.assign("most", &rays)

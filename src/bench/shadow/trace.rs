@@ -10,7 +10,7 @@ use transport::lightcut::{
     Visibility, to_vpl,
 };
 use transport::lights::{LightNode, Origin, Vpl};
-use transport::radiance_cache::CacheSettings;
+use transport::radiance_cache::{CLAMP, CacheSettings, MAX_CUT};
 
 /// Points that cuts light.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -94,7 +94,8 @@ fn chunk<'w>(lit: &LitScene<'w>, order: Order, points: &[usize], shared: bool) -
     let (groups, cut, receiver): (_, _, &dyn Fn(usize) -> Receiver<'w>) = match order {
         Order::Pixels => (lit.groups(points), CutSettings::default(), &surface),
         Order::Records => {
-            let cut = CutSettings { origin: Some(Origin::Indirect), ..CacheSettings::default().cut };
+            let CacheSettings { epsilon, .. } = CacheSettings::default();
+            let cut = CutSettings { epsilon, max_cut: MAX_CUT, clamp: CLAMP, origin: Some(Origin::Indirect) };
             (lit.groups_of_records(points), cut, &irradiance)
         }
     };

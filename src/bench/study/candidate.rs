@@ -2,8 +2,8 @@
 
 use super::Study;
 use embree::BuildQuality;
-use render::method::{Method, lightcuts, path, photon_cache, reconstruction};
-use render::plan::{DRAFT, FINAL, Ladder, PREVIEW, REFERENCE, options};
+use render::method::{Method, path, vpl};
+use render::plan::{DRAFT, FINAL, Ladder, PREVIEW, REFERENCE};
 use serde::Serialize;
 use transport::paths::Estimand;
 
@@ -104,25 +104,28 @@ pub fn qualities() -> impl Iterator<Item = Candidate> {
     ladder.into_iter().flat_map(move |ladder| {
         named.map(|(name, level)| {
             let method = ladder.at(level);
-            Candidate { options: options(&method), group: Group::Quality, ..Candidate::new(name, method) }
+            Candidate {
+                options: method.scaled_options(),
+                group: Group::Quality,
+                ..Candidate::new(name, method)
+            }
         })
     })
 }
 
 /// Returns the eye samples of methods that keep these: the samples of reconstruction cuts.
 pub fn eye_samples() -> Estimand {
-    let reconstruction::Settings { spp, seed, .. } = reconstruction::Settings::default();
+    let vpl::Settings { spp, seed, .. } = vpl::Settings::reconstruction();
     Estimand::EyeSamples { spp, seed }
 }
 
 /// Returns lightcuts on the eye samples, virtual lights and cuts of reconstruction cuts.
-pub fn lightcuts_on_eye_samples() -> lightcuts::Settings {
-    let reconstruction::Settings { spp, seed, max_depth, light, cut, family, .. } = Default::default();
-    lightcuts::Settings { spp, seed, max_depth, light, cut, family, ..Default::default() }
+pub fn lightcuts_on_eye_samples() -> vpl::Settings {
+    vpl::Settings::lightcuts()
 }
 
 /// Returns the photon cache on the eye samples of reconstruction cuts.
-pub fn photons_on_eye_samples() -> photon_cache::Settings {
-    let reconstruction::Settings { spp, seed, max_depth, .. } = Default::default();
-    photon_cache::Settings { spp, seed, max_depth, ..Default::default() }
+pub fn photons_on_eye_samples() -> vpl::Settings {
+    let spp = vpl::Settings::reconstruction().spp;
+    vpl::Settings { spp, ..vpl::Settings::photon_cache() }
 }

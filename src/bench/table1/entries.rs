@@ -3,8 +3,7 @@
 use crate::study::{
     Candidate, Group, Study, Subject, denoised_paths, lightcuts_on_eye_samples, photons_on_eye_samples,
 };
-use render::method::{Method, cache, lightcuts, reconstruction};
-use transport::lightcut::CutSettings;
+use render::method::{Method, vpl};
 use transport::radiance_cache::{DirectBy, Footprints, FoundBy};
 
 /// Groups that others are compared with, each with the label of its main row.
@@ -46,9 +45,9 @@ pub fn paper(label: &str) -> Option<&'static str> {
 /// denoiser. Methods other than these and the default take the eye samples of reconstruction cuts; the paper's caches
 /// and lightcuts also take their virtual lights and cuts.
 pub fn entries(study: &Study, subject: &Subject) -> Vec<Candidate> {
-    let reconstruction = reconstruction::Settings::default();
+    let reconstruction = vpl::Settings::reconstruction();
     let (cuts, photons) = (lightcuts_on_eye_samples(), photons_on_eye_samples());
-    let unshared = lightcuts::Settings { share: false, ..cuts };
+    let unshared = vpl::Settings { share: false, ..cuts };
     let of = |group, candidate| Candidate { group, ..candidate };
     let mut entries = vec![Candidate::new("default", Method::default())];
     if subject.walk(WALK).is_some() {
@@ -56,25 +55,25 @@ pub fn entries(study: &Study, subject: &Subject) -> Vec<Candidate> {
         entries.push(Candidate { walk: Some(WALK), ..walk });
     }
     entries.extend([
-        Candidate::new("reconstruction", Method::Reconstruction(reconstruction)),
+        Candidate::new("reconstruction", Method::Vpl(reconstruction)),
         Candidate::new("cache, anisotropic", paper_cache(Footprints::Anisotropic)),
         Candidate::new("cache, isotropic", paper_cache(Footprints::Isotropic)),
-        of(Group::PhotonCache, Candidate::new("photon-cache", Method::PhotonCache(photons))),
+        of(Group::PhotonCache, Candidate::new("photon-cache", Method::Vpl(photons))),
         lightcuts(),
-        of(Group::Unshared, Candidate::new("lightcuts, unshared", Method::Lightcuts(unshared))),
+        of(Group::Unshared, Candidate::new("lightcuts, unshared", Method::Vpl(unshared))),
     ]);
     for factor in CURVE {
         let mut settings = cuts;
         settings.cut.epsilon *= factor;
         let label = format!("lightcuts, ε {} %", 100.0 * settings.cut.epsilon);
-        let curve = Candidate { main: false, ..Candidate::new(label, Method::Lightcuts(settings)) };
+        let curve = Candidate { main: false, ..Candidate::new(label, Method::Vpl(settings)) };
         entries.push(of(Group::Lightcuts, curve));
     }
     for factor in RAYS {
         let mut settings = photons;
-        settings.rays = (settings.rays as f32 * factor).round() as u32;
-        let label = format!("photon-cache, {} rays", settings.rays);
-        let curve = Candidate { main: false, ..Candidate::new(label, Method::PhotonCache(settings)) };
+        settings.gathering.rays = (settings.gathering.rays as f32 * factor).round() as u32;
+        let label = format!("photon-cache, {} rays", settings.gathering.rays);
+        let curve = Candidate { main: false, ..Candidate::new(label, Method::Vpl(settings)) };
         entries.push(of(Group::PhotonCache, curve));
     }
     entries.extend(denoised_paths(study).map(|path| match path.method.spp() {
@@ -86,17 +85,17 @@ pub fn entries(study: &Study, subject: &Subject) -> Vec<Candidate> {
 
 /// Returns lightcuts per pixel, which methods that keep eye samples are compared with.
 pub fn lightcuts() -> Candidate {
-    let method = Method::Lightcuts(lightcuts_on_eye_samples());
+    let method = Method::Vpl(lightcuts_on_eye_samples());
     Candidate { group: Group::Lightcuts, ..Candidate::new("lightcuts", method) }
 }
 
 /// Returns the paper's cache of both layers.
 fn paper_cache(footprints: Footprints) -> Method {
-    let reconstruction::Settings { spp, light, cut, .. } = Default::default();
-    let mut settings = cache::Settings { spp, light, cut, ..Default::default() };
+    let vpl::Settings { spp, light, cut, .. } = vpl::Settings::reconstruction();
+    let mut settings = vpl::Settings { spp, light, cut, ..vpl::Settings::cache() };
     settings.cache.footprints = footprints;
     settings.cache.direct = DirectBy::Records;
     settings.cache.indirect = FoundBy::Records;
-    settings.cache.cut = CutSettings { epsilon: PAPER_EPSILON, ..cut };
-    Method::Cache(settings)
+    settings.cache.epsilon = PAPER_EPSILON;
+    Method::Vpl(settings)
 }

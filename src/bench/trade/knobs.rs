@@ -6,7 +6,7 @@
 use crate::study::{Candidate, Group};
 use base::setting::{JudgedBy, Levels, Spec, Value};
 use embree::BuildQuality;
-use render::method::{Method, reconstruction};
+use render::method::{Method, vpl};
 use transport::paths::Estimand;
 
 /// A setting, one of its numbers, or a choice between builds.
@@ -114,7 +114,7 @@ fn settings() -> Vec<Knob> {
         }
         // Methods that keep eye samples are judged on those of reconstruction cuts.
         if base.estimand() != Estimand::Pixels {
-            base.set_spp(reconstruction::Settings::default().spp);
+            base.set_spp(vpl::Settings::reconstruction().spp);
         }
         for (part, label) in levels.parts.iter().enumerate() {
             if levels.parts.len() > 1 && label.is_empty() {

@@ -33,7 +33,7 @@ use base::setting::JudgedBy;
 use errors::{ERRORS, error_of};
 use front::is_on_front;
 use knobs::{Knob, knobs};
-use render::method::{Method, cache, reconstruction};
+use render::method::{Method, vpl};
 use std::path::PathBuf;
 use sweep::{Sweep, design, effects, sample, sweep};
 use transport::lightcut::CutSettings;
@@ -116,13 +116,13 @@ fn limits() -> Vec<Candidate> {
         cut.epsilon *= 0.25;
         cut.max_cut *= 16;
     };
-    let mut sampled = cache::Settings::default();
+    let mut sampled = vpl::Settings::cache();
     sampled.cache.indirect = FoundBy::Cuts;
-    sampled.cache.share = false;
+    sampled.share = false;
     finer(&mut sampled.cut);
     let mut kept = lightcuts_on_eye_samples();
     finer(&mut kept.cut);
-    [("limit", Method::Cache(sampled)), ("limit of eye samples", Method::Lightcuts(kept))]
+    [("limit", Method::Vpl(sampled)), ("limit of eye samples", Method::Vpl(kept))]
         .map(|(label, method)| Candidate::new(label, method))
         .into()
 }
@@ -144,9 +144,9 @@ fn has_default_samples(method: &Method) -> bool {
 /// Returns the methods that keep eye samples at their defaults, all on those of reconstruction cuts.
 fn others() -> [Candidate; 3] {
     [
-        Method::Reconstruction(reconstruction::Settings::default()),
-        Method::Lightcuts(lightcuts_on_eye_samples()),
-        Method::PhotonCache(photons_on_eye_samples()),
+        Method::Vpl(vpl::Settings::reconstruction()),
+        Method::Vpl(lightcuts_on_eye_samples()),
+        Method::Vpl(photons_on_eye_samples()),
     ]
     .map(|method| Candidate { group: Group::Other, ..Candidate::new(method.name(), method) })
 }

@@ -1,11 +1,11 @@
-//! Traits of methods: the abilities of every method, and those of some.
+//! Traits of methods: the abilities of every method, and those of some. An ability of few methods has a default.
 
 use super::lights::LightStore;
 use super::outlook::Outlook;
 use super::path::PartialImage;
 use super::sampled_pixels::SampledPixels;
 use super::sampling::HasSampling;
-use super::scale::Scales;
+use super::scale::{Demand, Move};
 use crate::denoise::effort::Sampled;
 use crate::method::Output;
 use base::film::{Image, Window};
@@ -52,6 +52,56 @@ pub trait Renderer: Settings + HasSampling {
         Image::expected_bytes(window)
     }
 
+    /// True if renders return images of the records.
+    fn inspects(&self) -> bool {
+        false
+    }
+
+    /// True if a denoiser takes off the noise faster than further samples would. Such images are denoised by default.
+    fn leaves_noise(&self) -> bool {
+        false
+    }
+
+    /// True if renders return the denoiser's guides ([`Output::guides`]).
+    fn finds_guides(&self) -> bool {
+        false
+    }
+
+    /// Makes renders return a denoiser's guides, if the method can.
+    fn find_guides(&mut self) {}
+
+    /// Returns the light that is sampled.
+    fn sampled(&self) -> Sampled {
+        Sampled::Part
+    }
+
+    /// Samples groups of film pixels twice, by [`PILOT_SPP`] samples per pixel, with seeds of its own. So a plan can
+    /// measure noise and work.
+    ///
+    /// The result is `None` if the method samples no single pixels or no light, or if `control` is cancelled.
+    ///
+    /// [`PILOT_SPP`]: super::PILOT_SPP
+    fn sample_pixels(
+        &self,
+        _world: &World,
+        _lights: &LightStore,
+        _view: &View,
+        _groups: &[Vec<[u32; 2]>],
+        _control: &Control,
+    ) -> Option<SampledPixels> {
+        None
+    }
+
+    /// Returns the factors of all settings that the quality scale moves; none if the method is not on the scale.
+    fn moves(&self) -> &'static [Move] {
+        &[]
+    }
+
+    /// Returns the numbers on which the work depends.
+    fn demand(&self) -> Demand {
+        Demand::default()
+    }
+
     /// Returns the method as one that renders frames of walk-throughs, if it is one.
     fn as_walks(&self) -> Option<&dyn Walks> {
         None
@@ -59,26 +109,6 @@ pub trait Renderer: Settings + HasSampling {
 
     /// Returns the method as one that resumes interrupted images, if it is one.
     fn as_resumes(&self) -> Option<&dyn Resumes> {
-        None
-    }
-
-    /// Returns the method as one whose images have noise, if it is one.
-    fn as_noisy(&self) -> Option<&dyn Noisy> {
-        None
-    }
-
-    /// Returns the method as one that samples single pixels, if it is one.
-    fn as_pilots(&self) -> Option<&dyn Pilots> {
-        None
-    }
-
-    /// Returns the method as one on the quality scale, if it is one.
-    fn as_scales(&self) -> Option<&dyn Scales> {
-        None
-    }
-
-    /// Returns the method as one on the quality scale, to move it there.
-    fn as_scales_mut(&mut self) -> Option<&mut dyn Scales> {
         None
     }
 }
@@ -115,37 +145,6 @@ pub trait Resumes {
     ///
     /// The result has the bits of an image that was not interrupted.
     fn render_rest(&self, world: &World, partial: &PartialImage, view: &View, control: &Control) -> Output;
-}
-
-/// A method whose images have noise, or may have it.
-pub trait Noisy {
-    /// True if a denoiser takes off the noise faster than further samples would. Such images are denoised by default.
-    fn leaves_noise(&self) -> bool;
-
-    /// True if renders return the denoiser's guides ([`Output::guides`]).
-    fn finds_guides(&self) -> bool;
-
-    /// Returns the light that is sampled.
-    fn sampled(&self) -> Sampled {
-        Sampled::Part
-    }
-}
-
-/// A method that samples single pixels, so that a plan can measure its noise and its work.
-pub trait Pilots {
-    /// Samples groups of film pixels twice, by [`PILOT_SPP`] samples per pixel, with seeds of its own.
-    ///
-    /// The result is `None` if the method samples no light, or if `control` is cancelled.
-    ///
-    /// [`PILOT_SPP`]: super::PILOT_SPP
-    fn sample_pixels(
-        &self,
-        world: &World,
-        lights: &LightStore,
-        view: &View,
-        groups: &[Vec<[u32; 2]>],
-        control: &Control,
-    ) -> Option<SampledPixels>;
 }
 
 /// Renders one image of `view` with virtual lights of its own.

@@ -21,6 +21,26 @@ pub trait HasSampling {
 
     /// Sets samples, seed and path length.
     fn set_sampling(&mut self, sampling: Sampling);
+
+    /// Returns the samples per pixel.
+    fn spp(&self) -> u32 {
+        self.sampling().spp
+    }
+
+    /// Sets the samples per pixel.
+    fn set_spp(&mut self, spp: u32) {
+        self.set_sampling(Sampling { spp, ..self.sampling() });
+    }
+
+    /// Returns the random seed.
+    fn seed(&self) -> u32 {
+        self.sampling().seed
+    }
+
+    /// Sets the random seed.
+    fn set_seed(&mut self, seed: u32) {
+        self.set_sampling(Sampling { seed, ..self.sampling() });
+    }
 }
 
 impl Sampling {
@@ -34,20 +54,20 @@ impl Sampling {
 ///
 /// See [`base::setting`] for the syntax.
 macro_rules! method_settings {
-    ($(#[doc = $about:literal])+ spp = $spp:literal, $heading:literal { $($own:tt)* }) => {
+    ($(#[doc = $about:literal])+ spp = $spp:literal $(, of $preset:ident)? { $($own:tt)* }) => {
         ::base::setting::settings! {
             $(#[doc = $about])+
-            pub struct Settings in $heading {
+            pub struct Settings in "" $(of $preset)? {
                 /// Samples per pixel.
                 spp: u32 = $spp => [
-                    .heading("").at_least(1.0).scaled(&::base::setting::UP)
+                    .at_least(1.0).scaled(&::base::setting::UP)
                     .judged_by(::base::setting::JudgedBy::Flip)
                 ];
                 /// Random seed.
-                seed: u32 = 0 => [.heading("")];
+                seed: u32 = 0 => [];
                 /// Maximum path length in edges from the eye. 1 shows visible emitters, 2 adds direct light [default:
                 /// from the scene].
-                max_depth: Option<u32> = None => [.heading("").at_least(1.0)];
+                max_depth: Option<u32> = None => [.at_least(1.0)];
                 $($own)*
             }
         }

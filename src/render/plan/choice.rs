@@ -107,7 +107,7 @@ impl Chooser {
         base: &Method,
         control: &Control,
     ) -> Option<Chooser> {
-        let Method::Cache(_) = base else { return None };
+        let Method::Vpl(_) = base else { return None };
         if world.scene.focuses_lights() {
             return None;
         }

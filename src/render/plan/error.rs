@@ -10,8 +10,8 @@
 
 use super::bracket::{ErrorBracket, FALL, Next};
 use super::choice::Chooser;
-use super::ladder::{Ladder, options};
-use crate::method::{Method, Output, ScaledSetting};
+use super::ladder::Ladder;
+use crate::method::{Method, Output, SPP};
 use crate::verify::{Truth, Verified, VerifySettings};
 use base::film::Image;
 use base::progress::Control;
@@ -167,7 +167,7 @@ impl Search<'_> {
         let mut ladder = ladder.clone();
         // More eye samples do not reduce an error that is measured at the image's own eye samples.
         if matches!(self.goal.measure.estimand, Estimand::EyeSamples { .. }) {
-            ladder.pin(ScaledSetting::Spp);
+            ladder.pin(SPP);
         }
         let (Searched { mut step, error: expected, mut image }, searched) =
             self.search(&ladder, start, first)?;
@@ -181,7 +181,7 @@ impl Search<'_> {
             if last || self.control.is_cancelled() {
                 return Some(PlannedImage {
                     method,
-                    options: options(&method),
+                    options: method.scaled_options(),
                     expected,
                     output: image.output,
                     time: image.time,

@@ -1,6 +1,6 @@
 //! The quality scale of a method, with the limits of a plan.
 
-use crate::method::{LEVELS, Method, ScaleLimits, ScaledSetting};
+use crate::method::{LEVELS, Method, ScaleLimits};
 use base::film::Window;
 use base::stats::available_bytes;
 
@@ -25,14 +25,14 @@ pub struct Ladder {
 
 impl Ladder {
     /// Creates the scale around the settings of `base`, except the pinned ones; `None` if the method has no scale.
-    pub fn new(base: Method, pinned: &[ScaledSetting]) -> Option<Ladder> {
+    pub fn new(base: Method, pinned: &[&'static str]) -> Option<Ladder> {
         let limits = ScaleLimits { pinned: pinned.to_vec(), max_spp: u32::MAX };
-        base.as_scales().map(|_| Ladder { base, limits })
+        (!base.moves().is_empty()).then_some(Ladder { base, limits })
     }
 
-    /// Pins one more setting.
-    pub fn pin(&mut self, setting: ScaledSetting) {
-        self.limits.pinned.push(setting);
+    /// Pins one more setting, given its key.
+    pub fn pin(&mut self, key: &'static str) {
+        self.limits.pinned.push(key);
     }
 
     /// Limits the samples of `window` to those that fit into the memory available.
@@ -57,17 +57,9 @@ impl Ladder {
     /// Returns the method with the settings at `level`.
     pub fn at(&self, level: f64) -> Method {
         let mut method = self.base;
-        if let Some(scales) = method.as_scales_mut() {
-            scales.scale(level, &self.limits);
-        }
+        method.scale(level, &self.limits);
         method
     }
-}
-
-/// Returns the command-line options of the settings of `method` that the scale moves.
-pub fn options(method: &Method) -> String {
-    let mut method = *method;
-    method.as_scales_mut().map_or_else(String::new, |scales| scales.options())
 }
 
 #[cfg(test)]
@@ -82,13 +74,9 @@ mod tests {
             let mut before: Option<Method> = None;
             for k in 0..=32 {
                 let now = ladder.at(f64::from(k) * 0.25);
-                let number = |mut method: Method, setting: ScaledSetting| {
-                    let value = method.as_scales_mut().unwrap().scaled(setting);
-                    value.map_or(0.0, |value| value.numbers()[0])
-                };
-                let counts = [ScaledSetting::Spp, ScaledSetting::MaxCut, ScaledSetting::Vpls];
-                let numbers = |method: Method| counts.map(|setting| number(method, setting));
-                let epsilon = |method: Method| number(method, ScaledSetting::Epsilon);
+                let number = |method: Method, key| method.settings()[key].as_f64().unwrap_or(0.0);
+                let numbers = |method: Method| ["spp", "max_cut", "vpls"].map(|key| number(method, key));
+                let epsilon = |method: Method| number(method, "epsilon");
                 if let Some(before) = before {
                     assert!(numbers(before).iter().zip(numbers(now)).all(|(a, b)| *a <= b), "{k} {now:?}");
                     assert!(epsilon(before) >= epsilon(now), "{k} {now:?}");
@@ -103,10 +91,10 @@ mod tests {
     #[test]
     fn what_is_typed_stays_and_numbers_read_back() {
         let base = Method::named("reconstruction").unwrap();
-        let all: Vec<_> = base.as_scales().unwrap().moves().iter().map(|moved| moved.setting).collect();
+        let all: Vec<_> = base.moves().iter().map(|moved| moved.key).collect();
         assert_eq!(Ladder::new(base, &all).unwrap().at(0.7).settings(), base.settings());
         let found = Ladder::new(base, &[]).unwrap().at(1.37);
-        let text = options(&found);
+        let text = found.scaled_options();
         // The method has no records.
         assert!(text.len() < 120 && !text.contains("--record-epsilon"), "{text}");
         let mut again = base;
@@ -121,7 +109,7 @@ mod tests {
     fn levels_are_exact() {
         let ladder = Ladder::new(Method::named("reconstruction").unwrap(), &[]).unwrap();
         assert_eq!(
-            options(&ladder.at(4.0)),
+            ladder.at(4.0).scaled_options(),
             "--spp 4 --epsilon 0.08 --max-cut 5000 --vpls 300000 --patches 1020"
         );
     }

@@ -2,7 +2,7 @@
 
 use crate::cost::{PRICES, ScenePrices};
 use crate::denoise::{Denoiser, Guides, Quality};
-use crate::method::{LightStore, Method, Output, cache, path};
+use crate::method::{LightStore, Method, Output, path, vpl};
 use base::film::Image;
 use base::progress::Control;
 use base::stats::{Stage, Stopwatch};
@@ -35,7 +35,7 @@ pub fn measure_prices(world: &World, view: &View, control: &Control) -> Option<V
         output.complete.then_some(output)
     };
     let by_paths = render(Method::Path(path::Settings { spp: PATHS, ..path::Settings::default() }))?;
-    let by_cache = render(Method::Cache(cache::Settings::default()))?;
+    let by_cache = render(Method::Vpl(vpl::Settings::cache()))?;
 
     let path_time = time(&by_paths, &[Stage::Render]);
     let (rays, shadow_rays) = (by_paths.work.rays as f64, by_paths.work.shadow_rays as f64);

@@ -27,7 +27,7 @@ mod work;
 
 pub use choice::{Chooser, MethodChoice, Reason};
 pub use error::{ErrorGoal, PlannedImage, for_error};
-pub use ladder::{DRAFT, FINAL, Ladder, PREVIEW, REFERENCE, options};
+pub use ladder::{DRAFT, FINAL, Ladder, PREVIEW, REFERENCE};
 pub use measured_prices::{MeasuredPrice, measure_prices};
 pub use small_view::smaller;
 pub use time::{Deadline, LATE, TimePlan, for_time};

@@ -83,8 +83,7 @@ impl Pilot {
         control: &Control,
     ) -> Option<Pilot> {
         let squares = squares(view.window.film);
-        let sample =
-            |method: &Method| method.as_pilots()?.sample_pixels(world, lights, view, &squares, control);
+        let sample = |method: &Method| method.sample_pixels(world, lights, view, &squares, control);
         let [cache, path] = methods;
         let (sampled, paths) = (sample(cache)?, sample(path)?);
         Pilot::by(squares[0].len(), &sampled, &paths)

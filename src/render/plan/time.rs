@@ -5,7 +5,7 @@
 //!
 //! The plan assumes a steady machine: if other work uses the processors later, the run is late.
 
-use super::ladder::{Ladder, options};
+use super::ladder::Ladder;
 use super::time_model::Timed;
 use super::trials::{Trial, Trials, size};
 use crate::method::{LightStore, Method};
@@ -56,7 +56,7 @@ pub fn for_time(
     }
     let (level, seconds) = trials.best(usable())?;
     let method = ladder.at(level);
-    Some(TimePlan { method, options: options(&method), seconds, trials: trials.count() })
+    Some(TimePlan { method, options: method.scaled_options(), seconds, trials: trials.count() })
 }
 
 /// Renders a trial and times it; `None` if cancelled.

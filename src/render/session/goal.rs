@@ -1,7 +1,7 @@
 //! The goal of a frame.
 
 use crate::denoise::Quality;
-use crate::method::{Method, ScaledSetting};
+use crate::method::Method;
 use crate::verify::VerifySettings;
 use base::stats::Stopwatch;
 use transport::eye::{Averaging, Features};
@@ -65,8 +65,8 @@ pub struct TimeGoal {
     pub seconds: f64,
     /// Start of the run.
     pub run: Stopwatch,
-    /// Settings that the plan does not change.
-    pub pinned: Vec<ScaledSetting>,
+    /// Keys of settings that the plan does not change.
+    pub pinned: Vec<&'static str>,
 }
 
 /// Maximum error of an image.
@@ -76,6 +76,6 @@ pub struct ErrorLimit {
     pub error: f64,
     /// Maximum number of paths at a pixel whose error is measured.
     pub max_samples: u32,
-    /// Settings that the search does not change.
-    pub pinned: Vec<ScaledSetting>,
+    /// Keys of settings that the search does not change.
+    pub pinned: Vec<&'static str>,
 }

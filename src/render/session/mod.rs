@@ -106,7 +106,7 @@ impl Session {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::method::{Method, reconstruction};
+    use crate::method::{Method, vpl};
     use base::progress::Control;
     use base::stats::Counter;
     use world::view::{Framing, View};
@@ -115,9 +115,9 @@ mod tests {
     fn frames_of_a_session_share_lights_and_have_the_bits_of_single_frames() {
         let scene = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/cornell.toml");
         let open = || Session::open(&scene, &LoadOptions::default()).unwrap().session;
-        let mut settings = reconstruction::Settings { spp: 1, ..Default::default() };
+        let mut settings = vpl::Settings { spp: 1, ..vpl::Settings::reconstruction() };
         settings.light.indirect = 2000;
-        let goal = |settings| Goal { method: Method::Reconstruction(settings), ..Goal::default() };
+        let goal = |settings| Goal { method: Method::Vpl(settings), ..Goal::default() };
         let framing = |crop| Framing { resolution: Some([32, 32]), crop, ..Framing::default() };
         let session = open();
         let frame = |session: &Session, settings, crop| {

@@ -9,7 +9,7 @@ use super::goal::{ErrorLimit, Goal, PlanGoal, TimeGoal};
 use super::next_frame::next_frame;
 use super::notes::Notes;
 use super::report;
-use crate::method::{LightStore, Method, Output, ScaledSetting};
+use crate::method::{LightStore, Method, Output};
 use crate::plan::{self, Chooser, Deadline, ErrorGoal, LATE, Ladder, MethodChoice};
 use crate::verify::{Verified, VerifySettings};
 use base::stats::{Stage, Stopwatch};
@@ -86,7 +86,7 @@ pub fn image(
 }
 
 /// Returns the quality scale of a method, within the memory available.
-fn ladder(context: &FrameContext, method: Method, pinned: &[ScaledSetting]) -> Result<Ladder, FrameError> {
+fn ladder(context: &FrameContext, method: Method, pinned: &[&'static str]) -> Result<Ladder, FrameError> {
     let ladder = Ladder::new(context.finish.guided(method), pinned);
     Ok(ladder.ok_or(FrameError::Unplannable(method.name()))?.within(&context.view.window))
 }

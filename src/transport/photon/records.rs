@@ -18,7 +18,7 @@ use crate::radiance_cache::occlusion_hessian::OcclusionHessian;
 use crate::radiance_cache::record::{Diagnostics, NewRecord, Record};
 use crate::radiance_cache::series::SeriesGatherer;
 use crate::radiance_cache::source::{LightcutSource, RecordSource};
-use crate::radiance_cache::{CacheSettings, Footprints};
+use crate::radiance_cache::{CacheSettings, CellLimits, Footprints};
 use base::math::{LUMINANCE, luminance};
 use base::sampling::hash;
 use glam::Vec3;
@@ -68,6 +68,10 @@ struct GatherWorkspace {
 impl RecordSource for FinalGatherSource<'_> {
     fn settings(&self) -> &CacheSettings {
         self.direct.settings
+    }
+
+    fn cells(&self) -> CellLimits {
+        self.direct.cells()
     }
 
     fn records(&self, candidates: &[Candidate]) -> (Vec<NewRecord>, CutCounts) {

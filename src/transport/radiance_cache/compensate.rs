@@ -127,7 +127,7 @@ impl Cutter<'_> {
     ) -> [Rgb; LANES] {
         let settings = CutSettings {
             epsilon: EPSILON,
-            max_cut: source.settings.cut.max_cut.div_ceil(CUT_FRACTION),
+            max_cut: source.cut.max_cut.div_ceil(CUT_FRACTION),
             ..CutSettings::default()
         };
         self.points.set(group.iter().map(|lookup| {

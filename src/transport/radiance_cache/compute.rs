@@ -8,6 +8,7 @@
 //! Paper: Herzog et al. 2009, section 6.
 
 use super::candidate::Candidate;
+use super::cells::CellLimits;
 use super::clamps::Clamps;
 use super::compensate::{self, Cutter};
 use super::footprint::{Footprint, FootprintLimits};
@@ -34,6 +35,10 @@ use world::shadow::Engine;
 impl RecordSource for LightcutSource<'_> {
     fn settings(&self) -> &CacheSettings {
         self.settings
+    }
+
+    fn cells(&self) -> CellLimits {
+        self.cells
     }
 
     fn records(&self, candidates: &[Candidate]) -> (Vec<NewRecord>, CutCounts) {
@@ -73,7 +78,7 @@ impl LightcutSource<'_> {
             let alike = candidates.iter().copied().filter(|candidate| candidate.missing == missing).collect();
             groups.extend(group_compact(alike, self.context.world.diagonal, place));
         }
-        if self.settings.share { groups } else { groups.concat().chunks(1).map(<[_]>::to_vec).collect() }
+        if self.share { groups } else { groups.concat().chunks(1).map(<[_]>::to_vec).collect() }
     }
 
     /// Returns true if footprints depend on the distances of occluders. With probe rays the distances of visible
@@ -172,7 +177,9 @@ impl<'w> RecordWorkspace<'w> {
         let (world, transfer) = (s.context.world, &s.context.transfer);
         receivers.set(group.iter().map(Candidate::receiver));
         let receivers = &*receivers;
-        let settings = CutSettings { origin: group[0].missing.only(), ..s.settings.cut_in(group[0].cell) };
+        let Candidate { missing, cell, .. } = group[0];
+        let epsilon = s.cells.epsilon(s.settings.epsilon, cell);
+        let settings = CutSettings { epsilon, origin: missing.only(), ..*s.cut };
         let log = s.needs_occluders().then(|| OccluderLog::new(world));
         let places: Vec<_> = group.iter().map(|candidate| (candidate.point, candidate.sample)).collect();
         let (cut, mut hessians) = match &log {

@@ -6,6 +6,7 @@
 //! The records outlive the frame (see [`super::store`]). This part depends on the eye samples of the frame.
 
 use super::adapt::{self, Discontinuity};
+use super::cells::CellLimits;
 use super::placement::{CandidateStep, candidates};
 use super::record::Record;
 use super::settings::CacheSettings;
@@ -42,7 +43,7 @@ impl<'a> CacheFrame<'a> {
     pub fn fill(
         targets: Targets<'a>,
         records: &mut Records,
-        source: &impl RecordSource,
+        source: &dyn RecordSource,
         control: &Control,
         stats: &mut Stats,
     ) -> CacheFrame<'a> {
@@ -72,13 +73,14 @@ impl<'a> CacheFrame<'a> {
     fn cover(
         &mut self,
         records: &mut Records,
-        source: &impl RecordSource,
+        source: &dyn RecordSource,
         control: &Control,
         stats: &mut Stats,
     ) {
         let count = self.targets.points.len();
-        let (reach, least_lacking) = (source.settings().farthest(), source.settings().least_lacking);
-        let least_cell = source.settings().least_cell.max(1) as usize;
+        let reach = source.settings().farthest();
+        let CellLimits { least, least_lacking, .. } = source.cells();
+        let least_cell = least.max(1) as usize;
         let mut level = first_level(count, least_cell, reach);
         while count >> level >= least_cell {
             for parity in 0..2 {

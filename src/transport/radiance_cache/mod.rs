@@ -27,6 +27,7 @@
 
 pub mod adapt;
 pub mod candidate;
+pub mod cells;
 pub mod clamps;
 pub mod compensate;
 pub mod compute;
@@ -58,4 +59,5 @@ pub mod targets;
 mod tests;
 pub mod vantage;
 
+pub use cells::CellLimits;
 pub use settings::{CLAMP, CacheSettings, DirectBy, Footprints, FoundBy, MAX_CUT};

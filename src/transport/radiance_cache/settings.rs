@@ -2,11 +2,9 @@
 
 use crate::eye::merged_points;
 use crate::hsh::SeriesSettings;
-use crate::lightcut::CutSettings;
 use crate::lights::DirectIndirect;
 use crate::paths::Estimand;
-use base::setting::{DOWN, JudgedBy, PAPER, PATCHES, SHARE, UP, choices, settings};
-use world::shadow::ShadowSettings;
+use base::setting::{DOWN, JudgedBy, PAPER, UP, choices, settings};
 
 choices! {
     /// Shape of footprints.
@@ -64,9 +62,7 @@ settings! {
         /// Source of indirect light.
         indirect: FoundBy = FoundBy::Records => [.values(&["records", "cuts"])];
         /// Maximum error bound of a cluster in the cut of a record, relative to the luminance of the record.
-        cut: CutSettings = CutSettings { epsilon: 0.005, clamp: CLAMP, max_cut: MAX_CUT, ..CutSettings::default() } => [
-            at epsilon .named("record_epsilon").fraction().scaled(&DOWN)
-        ];
+        epsilon: f32 = 0.005 => [.named("record_epsilon").fraction().scaled(&DOWN)];
         /// Shape of the footprints of records.
         footprints: Footprints = Footprints::Occlusion => [
             .heading(PAPER).values(&["isotropic", "anisotropic", "occlusion"])
@@ -99,25 +95,11 @@ settings! {
         /// Minimum number of eye samples in a cell of the kd-tree that gets a record. Smaller cells use cuts or final
         /// gathering.
         least_cell: u32 = 256 => [.at_least(1.0).scaled(&UP)];
-        /// Minimum share of the eye samples in a cell that records must lack, for the cell to get a record.
-        least_lacking: f32 = 0.0;
-        /// Minimum number of eye samples in a cell whose record is exact. Records of smaller cells are loose.
-        exact_cell: u32 = 0;
-        /// Minimum error bound of a cluster in the cut of a loose record.
-        loose_epsilon: f32 = 0.0;
-        /// Approximate number of patches of the eye samples without records. Sixteen samples of each share a cut,
-        /// which is reconstructed at the others. The cost of cuts is proportional to it at any resolution.
-        patches: u32 = 4096 => [is PATCHES];
-        /// Sharing of cuts between neighbours. If off, every record and sample has its own cut, and `patches` has no
-        /// effect.
-        share: bool = true => [is SHARE];
-        /// Occluder cache for the shadow rays of cuts. It is emptied before every group of neighbours.
-        shadows: ShadowSettings = ShadowSettings::default() => [group];
     }
 }
 
 /// Approximate number of frames of a walk-through over which the cost of a record is amortised.
-const WALK_FRAMES: u32 = 8;
+pub(super) const WALK_FRAMES: u32 = 8;
 
 /// Maximum share of extra samples in a frame of a walk-through, whose time is mostly that of samples.
 const WALK_EXTRA_SAMPLES: f32 = 0.2;
@@ -125,12 +107,6 @@ const WALK_EXTRA_SAMPLES: f32 = 0.2;
 /// Factor on the minimum radius of footprints in walk-throughs. Eye samples on fine detail move from frame to frame,
 /// and should find the records of the last frame.
 const WALK_REACH: f32 = 2.0;
-
-/// Minimum share of the eye samples in a cell that must lack light, for the cell to get a record, in views of a list.
-const VIEWS_LACKING: f32 = 0.25;
-
-/// Approximate time of an exact record over the time of a loose one.
-const EXACT_OVER_LOOSE: f32 = 2.0;
 
 impl CacheSettings {
     /// Returns the settings for a frame of a walk-through, whose records later frames will use.
@@ -142,35 +118,6 @@ impl CacheSettings {
             *least = (*least * WALK_REACH).min(*largest);
         }
         settings
-    }
-
-    /// Returns the settings for a view of a list, which has the records of former views. `overlap` is the mean number
-    /// of views that see a surface, over which the cost of a record is amortised.
-    ///
-    /// Cells too small for the record of a still have a loose record: it takes the place of a few cuts of eye samples,
-    /// whose error bound is `epsilon`, and is as exact as they are.
-    ///
-    /// Without overlap, a view is a still. A still gives a record to every cell that lacks light anywhere. If most of a
-    /// cell has light already, the rest is mostly fine detail, which a record hardly covers.
-    pub fn for_views(&self, overlap: f32, epsilon: f32) -> CacheSettings {
-        if overlap <= 1.0 {
-            return *self;
-        }
-        let finer = 1.0 + EXACT_OVER_LOOSE * (overlap.min(WALK_FRAMES as f32) - 1.0);
-        let least_cell = (self.least_cell as f32 / finer) as u32;
-        CacheSettings {
-            least_cell: least_cell.max(1),
-            least_lacking: VIEWS_LACKING,
-            exact_cell: self.least_cell,
-            loose_epsilon: epsilon,
-            ..*self
-        }
-    }
-
-    /// Returns the settings of the cut of a record in a cell of so many eye samples.
-    pub fn cut_in(&self, cell: u32) -> CutSettings {
-        let least = if cell < self.exact_cell { self.loose_epsilon } else { 0.0 };
-        CutSettings { epsilon: self.cut.epsilon.max(least), ..self.cut }
     }
 
     /// Returns the maximum radius of any footprint, in spacings of eye samples.
@@ -213,34 +160,5 @@ impl CacheSettings {
     /// Returns true if cuts light both layers.
     pub fn lights_by_cuts(&self) -> bool {
         self.direct == DirectBy::Cuts && self.indirect == FoundBy::Cuts
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn records_of_views_are_finer_the_more_views_overlap_and_views_alone_are_stills() {
-        let still = CacheSettings::default();
-        let of = |still: CacheSettings, overlap| still.for_views(overlap, 0.05);
-        assert_eq!(format!("{:?}", of(still, 1.0)), format!("{still:?}"));
-        let cells = [1.5, 2.0, 6.0, 8.0, 100.0].map(|overlap| of(still, overlap).least_cell);
-        assert!(cells[0] < still.least_cell && cells.is_sorted_by(|a, b| a >= b), "{cells:?}");
-        assert_eq!(cells[3], cells[4]);
-        assert!(of(CacheSettings { least_cell: 1, ..still }, 9.0).least_cell >= 1);
-    }
-
-    #[test]
-    fn records_of_views_are_as_exact_as_a_still_in_its_cells_and_as_cuts_in_smaller_ones() {
-        let still = CacheSettings::default();
-        let epsilon = |settings: &CacheSettings, cell| settings.cut_in(cell).epsilon;
-        for cell in [1, still.least_cell - 1, still.least_cell, 100_000] {
-            assert_eq!(epsilon(&still, cell), still.cut.epsilon);
-            let expected = if cell < still.least_cell { 0.05 } else { still.cut.epsilon };
-            assert_eq!(epsilon(&still.for_views(4.0, 0.05), cell), expected);
-            // Cuts that are more exact than records leave records as they are.
-            assert_eq!(epsilon(&still.for_views(4.0, 1e-4), cell), still.cut.epsilon);
-        }
     }
 }

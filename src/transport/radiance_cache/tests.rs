@@ -4,7 +4,7 @@
 use super::candidate::Candidate;
 use super::record::Record;
 use super::source::{LightcutSource, RecordSource};
-use super::{CacheSettings, Footprints};
+use super::{CacheSettings, CellLimits, Footprints};
 use crate::eye::{EyePass, EyeSettings};
 use crate::lightcut::{CutSettings, Receiver, Transfer, gather_all};
 use crate::lights::{DirectIndirect, Family, LightPassSettings, LightTrees, Origin, light_pass};
@@ -76,9 +76,11 @@ fn extrapolate(world: &WorldAndView, footprints: Footprints, probe_rays: u32) ->
         LightTrees::build(&pass.sets, pass.profiles, world.diagonal, Family::Divisive, &Control::new());
     let transfer = Transfer::new(&trees, world.diagonal);
     let cut = CutSettings { epsilon: 0.002, max_cut: 20_000, clamp: None, ..CutSettings::default() };
-    let cache = CacheSettings { cut, footprints, probe_rays, ..CacheSettings::default() };
-    let source =
-        LightcutSource { context: ShadingContext { world, transfer, compensation: None }, settings: &cache };
+    let settings =
+        &CacheSettings { epsilon: cut.epsilon, footprints, probe_rays, ..CacheSettings::default() };
+    let context = ShadingContext { world, transfer, compensation: None, samples: None };
+    let cells = CellLimits::new(settings);
+    let source = LightcutSource { context, settings, cells, cut: &cut, share: true };
 
     let candidates = open_floor(&samples);
     assert!(candidates.len() > 60, "{}", candidates.len());

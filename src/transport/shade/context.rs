@@ -17,31 +17,33 @@ pub struct ShadingContext<'a> {
     pub transfer: Transfer<'a>,
     /// Compensation of clamped light; `None` to leave it lost.
     pub compensation: Option<Compensation<'a>>,
+    /// Samples for patches of anchors alone, which are taken if they are fewer than the clusters of a cut; `None` to
+    /// use cuts everywhere.
+    pub samples: Option<Samples>,
 }
 
 impl<'a> ShadingContext<'a> {
     /// Creates the context for shading by `lights`. With `compensated`, short rays find light clamped close to points.
     pub fn new(world: &'a World, lights: &'a Lights, compensated: bool) -> ShadingContext<'a> {
         let compensation = compensated.then(|| Compensation::new(world, lights));
-        ShadingContext { world, transfer: Transfer::of(lights, compensated), compensation }
+        ShadingContext { world, transfer: Transfer::of(lights, compensated), compensation, samples: None }
     }
 }
 
 /// Settings of the shading stage.
 #[derive(Clone, Copy, Debug)]
-pub struct ShadeSettings {
+pub struct ShadeSettings<'a> {
     /// Settings of cuts.
-    pub cut: CutSettings,
+    pub cut: &'a CutSettings,
     /// True if neighbours share cuts.
     pub share: bool,
-    /// Samples for patches of anchors alone, which are taken if they are fewer than the clusters of a cut; `None` to
-    /// use cuts everywhere.
-    pub samples: Option<Samples>,
+    /// Approximate number of patches, if there is a task for each point.
+    pub patches: u32,
     /// Settings of shadow rays, with those of the occluder cache.
-    pub shadows: ShadowSettings,
+    pub shadows: &'a ShadowSettings,
 }
 
-impl ShadeSettings {
+impl ShadeSettings<'_> {
     /// True if a group of `points` points shares a cut.
     pub fn shares(&self, points: usize) -> bool {
         self.share && points >= MIN_SHARED

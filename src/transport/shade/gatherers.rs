@@ -55,9 +55,8 @@ impl<'w> Gatherers<'w> {
         mut shaded: impl FnMut(ShadingTask, Shaded),
     ) {
         let Some(first) = patch.first() else { return };
-        let cut = CutSettings { origin: first.origin, ..settings.cut };
-        let samples =
-            settings.samples.filter(|_| patch.len() <= LANES && first.origin == Some(Origin::Indirect));
+        let cut = CutSettings { origin: first.origin, ..*settings.cut };
+        let samples = c.samples.filter(|_| patch.len() <= LANES && first.origin == Some(Origin::Indirect));
         if let Some(samples) = samples
             && self.by_samples(c, rays, points, patch, &sampled(&cut, &samples, first), &mut shaded)
         {

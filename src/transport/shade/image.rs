@@ -50,18 +50,16 @@ impl ShadedImage {
         }
     }
 
-    /// Shades `tasks` in patches and adds their light. There are about `count` patches if there is a task for each
-    /// point. Watchers see the image, and then the light of each patch.
+    /// Shades `tasks` in patches and adds their light. Watchers see the image, and then the light of each patch.
     pub fn shade<'w>(
         &mut self,
         context: &ShadingContext<'w>,
         eye: &EyePass<'w>,
         tasks: &[ShadingTask],
-        count: u32,
         settings: &ShadeSettings,
         control: &Control,
     ) -> ShadingCounts {
-        let patches = patches(&eye.points, tasks, count, context.world.diagonal);
+        let patches = patches(&eye.points, tasks, settings.patches, context.world.diagonal);
         let live = control.live([self.color.width, self.color.height]);
         if let Some(live) = &live {
             live.show(&self.color);

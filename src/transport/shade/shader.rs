@@ -25,7 +25,7 @@ add_fields!(ShadingCounts { cuts, shadows, compensation });
 /// Workspaces and shadow rays of one thread.
 pub struct Shader<'c, 'w> {
     context: &'c ShadingContext<'w>,
-    settings: &'c ShadeSettings,
+    settings: &'c ShadeSettings<'c>,
     gatherers: Gatherers<'w>,
     shadows: Engine<'w>,
     /// Points that have no group yet.
@@ -36,7 +36,7 @@ pub struct Shader<'c, 'w> {
 
 impl<'c, 'w> Shader<'c, 'w> {
     /// Creates the workspaces of a thread.
-    pub fn new(context: &'c ShadingContext<'w>, settings: &'c ShadeSettings) -> Shader<'c, 'w> {
+    pub fn new(context: &'c ShadingContext<'w>, settings: &'c ShadeSettings<'c>) -> Shader<'c, 'w> {
         let ShadeSettings { share, shadows, .. } = settings;
         let shadows = Engine::with(context.world, shadows.for_samples(*share), shadows.cache);
         let (left, group) = Default::default();

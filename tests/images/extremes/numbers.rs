@@ -6,7 +6,7 @@ use crate::oracle::{assert_rms_below, mean_luminance};
 use glam::Vec3;
 use lightsplat::film::{Image, Window};
 use lightsplat::math::Rgb;
-use lightsplat::method::{LightPassSettings, lightcuts, path};
+use lightsplat::method::{LightPassSettings, path, vpl};
 use std::path::Path;
 
 fn by_path(world: &WorldAndView, spp: u32) -> Image {
@@ -15,7 +15,7 @@ fn by_path(world: &WorldAndView, spp: u32) -> Image {
 
 fn by_lightcuts(world: &WorldAndView) -> Image {
     let light = LightPassSettings { direct: 256, indirect: 2000, ..LightPassSettings::default() };
-    image(world, &lightcuts::Settings { spp: 1, light, ..lightcuts::Settings::default() })
+    image(world, &vpl::Settings { spp: 1, light, ..vpl::Settings::lightcuts() })
 }
 
 /// A lit room with a ball in it, everything times `scale`.

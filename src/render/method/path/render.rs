@@ -6,16 +6,15 @@ use super::tile::{PASS, PathTile, TILE, TileInputs};
 use crate::denoise::effort::Sampled;
 use crate::method::Output;
 use crate::method::lights::LightStore;
-use crate::method::renderer::{Noisy, Pilots, Renderer, Resumes};
+use crate::method::renderer::{Renderer, Resumes};
 use crate::method::sampled_pixels::SampledPixels;
 use crate::method::sampling::method_settings;
-use crate::method::scale::{Demand, Move, PATHS, ScaledSetting, Scales};
+use crate::method::scale::{Move, PATHS};
 use crate::method::tally::Tally;
 use base::film::Image;
 use base::math::Rgb;
 use base::parallel::{ShortRuns, Workspaces};
 use base::progress::Control;
-use base::setting::Value;
 use base::stats::Stage;
 use rayon::prelude::*;
 use transport::eye::{PackedGuide, PackedGuides};
@@ -25,7 +24,7 @@ use world::view::View;
 
 method_settings! {
     /// Settings of the method.
-    spp = 64, "" {
+    spp = 64 {
         /// Quantity that a pixel estimates.
         estimand: Estimand = Estimand::Pixels;
         /// True if renders return a denoiser's guides.
@@ -50,36 +49,13 @@ impl Renderer for Settings {
         self.estimand
     }
 
+    /// Makes renders return a denoiser's guides, if pixels are means over their squares.
+    fn find_guides(&mut self) {
+        self.guides = self.estimand == Estimand::Pixels;
+    }
+
     fn as_resumes(&self) -> Option<&dyn Resumes> {
         Some(self)
-    }
-
-    fn as_noisy(&self) -> Option<&dyn Noisy> {
-        Some(self)
-    }
-
-    fn as_pilots(&self) -> Option<&dyn Pilots> {
-        Some(self)
-    }
-
-    fn as_scales(&self) -> Option<&dyn Scales> {
-        Some(self)
-    }
-
-    fn as_scales_mut(&mut self) -> Option<&mut dyn Scales> {
-        Some(self)
-    }
-}
-
-impl Resumes for Settings {
-    fn render_rest(&self, world: &World, partial: &PartialImage, view: &View, control: &Control) -> Output {
-        self.image(world, Some(partial), view, control)
-    }
-}
-
-impl Noisy for Settings {
-    fn leaves_noise(&self) -> bool {
-        false
     }
 
     fn finds_guides(&self) -> bool {
@@ -89,9 +65,7 @@ impl Noisy for Settings {
     fn sampled(&self) -> Sampled {
         Sampled::All
     }
-}
 
-impl Pilots for Settings {
     fn sample_pixels(
         &self,
         world: &World,
@@ -102,28 +76,19 @@ impl Pilots for Settings {
     ) -> Option<SampledPixels> {
         sample_pixels(world, view, self.max_depth, groups, control)
     }
-}
 
-impl Scales for Settings {
     fn moves(&self) -> &'static [Move] {
         &PATHS
     }
+}
 
-    fn scaled(&mut self, setting: ScaledSetting) -> Option<&mut dyn Value> {
-        (setting == ScaledSetting::Spp).then_some(&mut self.spp as &mut dyn Value)
-    }
-
-    fn demand(&self) -> Demand {
-        Demand::default()
+impl Resumes for Settings {
+    fn render_rest(&self, world: &World, partial: &PartialImage, view: &View, control: &Control) -> Output {
+        self.image(world, Some(partial), view, control)
     }
 }
 
 impl Settings {
-    /// Makes renders return a denoiser's guides, if pixels are means over their squares.
-    pub fn find_guides(&mut self) {
-        self.guides = self.estimand == Estimand::Pixels;
-    }
-
     /// Renders the image, from the end of an interrupted one if there is one.
     fn image(&self, world: &World, partial: Option<&PartialImage>, view: &View, control: &Control) -> Output {
         let mut tally = Tally::default();
