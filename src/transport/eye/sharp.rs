@@ -12,7 +12,7 @@ use base::math::{LANES, Rgb, Vec2x16, Vec3x16, lanes_in, luminance};
 use base::sampling::{Sampler, power_heuristic};
 use glam::{Vec2, Vec3};
 use world::light::Receivers16;
-use world::material::Bsdf;
+use world::material::{Bsdf, Bsdfs16};
 use world::shadow;
 use world::{Surface, World};
 
@@ -130,13 +130,17 @@ impl Sharp<'_> {
         let (x, n) = LightReceiver::new(self.surface, self.lobe, self.wo).splat();
         let at = Receivers16 { position: &x, normal: &n, learned: None };
         let lights = emitters.sample_direct(at, &choices, &places, u16::MAX);
+        let mut wi = Vec3x16::default();
+        for i in 0..LANES {
+            wi.set(i, self.surface.frame.to_local(lights.direction.get(i)));
+        }
+        let (value, pdf) =
+            Bsdfs16::new(Vec3x16::splat(self.wo), |_| *self.lobe).eval_pdf(&wi, lights.useful());
         let (mut values, mut sum) = ([Rgb::ZERO; LANES], 0.0);
         for i in lanes_in(lights.useful()).filter(|i| lights.delta[*i] == 0) {
-            let wi = self.surface.frame.to_local(lights.direction.get(i));
-            let (value, pdf) = self.lobe.eval_pdf(self.wo, wi);
             let density = CANDIDATES * lights.pdf[i];
-            let weight = power_heuristic(density, pdf);
-            let value = value * lights.radiance.get(i) * (wi.z.abs() * weight / density);
+            let factor = wi.z[i].abs() * power_heuristic(density, pdf[i]) / density;
+            let value = value.get(i) * lights.radiance.get(i) * factor;
             if value.is_finite() {
                 values[i] = value;
                 sum += luminance(value);
