@@ -45,7 +45,7 @@ fn ply(vertex: &str, face: &str, vertices: [&str; 4], faces: [&str; 2]) -> Vec<u
     for (at, rest) in ["0 0 0", "1 0 0", "1 1 0", "0 1 0"].iter().zip(vertices) {
         text += &format!("{at} {rest}\n");
     }
-    text += &format!("3 0 1 2 {}\n4 0 2 3 1 {}\n", faces[0], faces[1]);
+    text += &format!("3 0 1 2 {}\n4 0 1 2 3 {}\n", faces[0], faces[1]);
     text.into_bytes()
 }
 

@@ -278,14 +278,14 @@ mod tests {
     }
 
     #[test]
-    fn large_polygons_that_cross_themselves_are_filled_and_told() {
-        for (teeth, expected) in [(20, true), (600, false), (2_600, false)] {
+    fn polygons_that_cross_themselves_are_filled_and_told() {
+        for teeth in [20, 600, 2_600] {
             let mut points = points(&comb(teeth));
             points.swap(3, 4);
             let corners: Vec<u32> = (0..points.len() as u32).collect();
             let is_exact = cut(&corners, |&corner| points[corner as usize], &mut Vec::new());
-            assert_eq!(is_exact, expected, "{teeth}");
-            if !expected {
+            assert!(!is_exact, "{teeth}");
+            if teeth > 20 {
                 let area = 2.0 + 2.0 * teeth as f64 / (2 * teeth - 1) as f64;
                 assert!((cut_all(&points).1 - area).abs() < 2.0 / teeth as f64, "{teeth}");
             }

@@ -182,7 +182,7 @@ pub(super) fn transform(operations: &[(String, Attributes, Location)]) -> Result
     for (tag, attributes, place) in operations {
         let next = operation(tag, attributes, place)?;
         matrix = next * matrix;
-        axes = unflattened(next) * axes;
+        axes = without_flat_scale(tag, next) * axes;
     }
     axes.w_axis = matrix.w_axis;
     if !matrix.is_finite() {
@@ -193,6 +193,15 @@ pub(super) fn transform(operations: &[(String, Attributes, Location)]) -> Result
         return Err(place.wrong("the transform is not finite", "correct its numbers"));
     }
     Ok(PropertyValue::Transform { matrix, axes })
+}
+
+/// Returns an operation with a scale of 1 in place of each scale of 0.
+fn without_flat_scale(tag: &str, operation: DMat4) -> DMat4 {
+    if tag != "scale" {
+        return unflattened(operation);
+    }
+    let scale = DVec3::new(operation.x_axis.x, operation.y_axis.y, operation.z_axis.z);
+    DMat4::from_scale(DVec3::select(scale.cmpeq(DVec3::ZERO), DVec3::ONE, scale))
 }
 
 fn operation(tag: &str, attributes: &Attributes, place: &Location) -> Result<DMat4, SceneError> {

@@ -124,7 +124,7 @@ impl Workplace {
             let _ = (file.color(), file.metadata(), file.window(), file.camera());
             file.layers().iter().for_each(|layer| _ = file.layer(layer));
         }
-        let has_sky = is_rendered || !matches!(extension, "gltf" | "glb");
+        let has_sky = is_rendered || !matches!(extension, "gltf" | "glb" | "stl");
         match self.load(extension, &if has_sky { LoadOptions::default() } else { without_sky() }) {
             Ok(loaded) => {
                 assert_sound(&loaded);
