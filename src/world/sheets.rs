@@ -108,12 +108,14 @@ impl World {
         self.sheets.is_some()
     }
 
-    /// Returns the share of the light that passes the sheets on a segment that is not occluded.
-    pub fn transmittance(&self, segment: &Ray) -> Rgb {
+    /// Returns [`World::transmittance_of`] for any number of sheets.
+    #[cfg(test)]
+    pub(crate) fn transmittance(&self, segment: &Ray) -> Rgb {
         self.transmittance_of(segment, u32::MAX)
     }
 
-    /// Returns the [`World::transmittance`] of a segment, 0 if it passes more than `most` sheets.
+    /// Returns the share of the light that passes the sheets on a segment that is not occluded, 0 if there are more
+    /// than `most`.
     pub fn transmittance_of(&self, segment: &Ray, most: u32) -> Rgb {
         let Some(sheets) = &self.sheets else { return Rgb::ONE };
         let out = -segment.direction.normalize();
