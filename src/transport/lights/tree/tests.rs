@@ -181,6 +181,27 @@ fn several_sets_share_one_array_and_keep_their_origin() {
 }
 
 #[test]
+fn vpls_keep_their_numbers_of_edges() {
+    for family in FAMILIES {
+        let mut sets = [random_set(50, VplKind::Omni), VplSet::new(VplKind::Omni, Origin::Indirect)];
+        sets[0].origin = Origin::Direct;
+        for edges in 1..200u8 {
+            sets[1].push_behind(edges, Vpl::omni(Vec3::X * f32::from(edges.reverse_bits())), Rgb::ONE);
+            sets[1].push_behind(edges, Vpl::omni(Vec3::X), Rgb::ZERO);
+        }
+        let trees = LightTrees::build(&sets, Vec::new(), 1.0, family, &Control::new());
+        for leaf in trees.leaves() {
+            let (vpl, edges) = trees.representative(leaf);
+            let expected = match leaf.origin() {
+                Origin::Direct => 0,
+                Origin::Indirect => (vpl.position.x as u8).reverse_bits(),
+            };
+            assert_eq!(edges, expected);
+        }
+    }
+}
+
+#[test]
 fn degenerate_vpls_build_valid_shallow_trees() {
     let coincident = {
         let mut set = VplSet::new(VplKind::Oriented, Origin::Indirect);
