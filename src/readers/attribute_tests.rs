@@ -45,7 +45,7 @@ fn ply(vertex: &str, face: &str, vertices: [&str; 4], faces: [&str; 2]) -> Vec<u
     for (at, rest) in ["0 0 0", "1 0 0", "1 1 0", "0 1 0"].iter().zip(vertices) {
         text += &format!("{at} {rest}\n");
     }
-    text += &format!("3 0 1 2 {}\n4 0 1 2 3 {}\n", faces[0], faces[1]);
+    text += &format!("3 0 1 2 {}\n4 1 2 3 0 {}\n", faces[0], faces[1]);
     text.into_bytes()
 }
 
@@ -193,7 +193,7 @@ fn attributes_of_divided_and_dropped_triangles_stay_with_them() {
         let of_vertices = ["0 0 0", "1 0 0.5", "1 1 1", "0 1 0.5"];
         // The second face loses the triangle without area between its last two corners.
         let file = String::from_utf8(ply(&floats, &floats, of_vertices, ["0 0 0", "0 0 1"])).unwrap();
-        let file = file.replace("4 0 2 3 1 0 0 1\n", "4 0 2 3 3 0.5 0.5 0.5\n");
+        let file = file.replace("4 1 2 3 0 0 0 1\n", "4 0 2 3 3 0.5 0.5 0.5\n");
         for name in ["vertex_color", "face_color"] {
             let text = HEAD.replace(
                 "\"color\" } }]",
