@@ -67,7 +67,7 @@ impl Object {
     /// Returns a transform, and the one with a scale of 1 in place of each scale of 0.
     pub fn transforms(&self, name: &str) -> Result<Option<[DMat4; 2]>, SceneError> {
         let get = |v: &PropertyValue| match v {
-            PropertyValue::Transform { matrix, axes } => Some([*matrix, *axes]),
+            PropertyValue::Transform(transforms) => Some(**transforms),
             _ => None,
         };
         self.typed(name, "transform", get)

@@ -23,10 +23,7 @@ pub(super) enum PropertyValue {
     /// Name of a file with a sampled spectrum.
     SamplesFile(String),
     /// A transform, and the one with a scale of 1 in place of each scale of 0, with an equal translation.
-    Transform {
-        matrix: DMat4,
-        axes: DMat4,
-    },
+    Transform(Box<[DMat4; 2]>),
 }
 
 type Attributes = BTreeMap<String, String>;
@@ -192,7 +189,7 @@ pub(super) fn transform(operations: &[(String, Attributes, Location)]) -> Result
             .unwrap_or(Location { path: Default::default(), line: None });
         return Err(place.wrong("the transform is not finite", "correct its numbers"));
     }
-    Ok(PropertyValue::Transform { matrix, axes })
+    Ok(PropertyValue::Transform(Box::new([matrix, axes])))
 }
 
 /// Returns an operation with a scale of 1 in place of each scale of 0.
@@ -340,30 +337,26 @@ mod tests {
             op("rotate", &[("z", "1"), ("angle", "90")]),
             op("translate", &[("x", "1")]),
         ];
-        let PropertyValue::Transform { matrix: m, .. } = transform(&operations).unwrap() else { panic!() };
-        assert!((m.transform_point3(DVec3::X) - DVec3::new(1.0, 2.0, 0.0)).length() < 1e-12);
+        let PropertyValue::Transform(m) = transform(&operations).unwrap() else { panic!() };
+        assert!((m[0].transform_point3(DVec3::X) - DVec3::new(1.0, 2.0, 0.0)).length() < 1e-12);
         let rows = "1 2 3 4 5 6 7 8 9 10 11 12 0 0 0 1";
-        let PropertyValue::Transform { matrix: m, .. } =
-            transform(&[op("matrix", &[("value", rows)])]).unwrap()
-        else {
+        let PropertyValue::Transform(m) = transform(&[op("matrix", &[("value", rows)])]).unwrap() else {
             panic!()
         };
-        assert_eq!(m.transform_point3(DVec3::X), DVec3::new(5.0, 13.0, 21.0));
+        assert_eq!(m[0].transform_point3(DVec3::X), DVec3::new(5.0, 13.0, 21.0));
         let at = op("lookat", &[("origin", "1 2 3"), ("target", "1 2 9"), ("up", "0 1 0")]);
-        let PropertyValue::Transform { matrix: m, .. } = transform(&[at]).unwrap() else { panic!() };
-        assert_eq!(m, DMat4::from_translation(DVec3::new(1.0, 2.0, 3.0)));
+        let PropertyValue::Transform(m) = transform(&[at]).unwrap() else { panic!() };
+        assert_eq!(m[0], DMat4::from_translation(DVec3::new(1.0, 2.0, 3.0)));
         // Mitsuba 3.9 gives these frames without an up vector.
         for (origin, axis) in [("0 0 5", DVec3::Y), ("0 5 0", DVec3::NEG_Z), ("0 0 -5", DVec3::NEG_Y)] {
             let at = op("lookat", &[("origin", origin), ("target", "0 0 0")]);
-            let PropertyValue::Transform { matrix: m, .. } = transform(&[at]).unwrap() else { panic!() };
-            assert!(m.transform_vector3(DVec3::X).distance(axis) < 1e-12, "{origin}");
+            let PropertyValue::Transform(m) = transform(&[at]).unwrap() else { panic!() };
+            assert!(m[0].transform_vector3(DVec3::X).distance(axis) < 1e-12, "{origin}");
         }
-        let PropertyValue::Transform { matrix: m, .. } =
-            transform(&[op("rotate", &[("angle", "0")])]).unwrap()
-        else {
+        let PropertyValue::Transform(m) = transform(&[op("rotate", &[("angle", "0")])]).unwrap() else {
             panic!()
         };
-        assert_eq!(m, DMat4::IDENTITY);
+        assert_eq!(m[0], DMat4::IDENTITY);
         let degenerate = [
             op("lookat", &[("origin", "1 2 3"), ("target", "1 2 3")]),
             op("lookat", &[("origin", "0 0 0"), ("target", "0 1 0"), ("up", "0 1 0")]),
