@@ -12,7 +12,7 @@ use super::found_light::{FoundLight, ShadowPacket};
 use super::groups::{FirstHits16, collect};
 use super::packet::{Packet, PathStage};
 use super::policy::PathPolicy;
-use super::vertices::Vertices;
+use super::vertices::{GroupLanes, Seen16, Vertices};
 use base::math::{Cone, LANES, Rgb, Vec3x16, first_lanes, lanes_in};
 use base::sampling::Samplers16;
 use embree::{Hits16, Rays16};
@@ -139,7 +139,12 @@ impl Batch {
             let first = FirstHits16 { surfaces, directions: &directions, pixel, spacing };
             collect(world, &first, grouped, &mut groups);
             let step = Step { depth: 1, max_depth, kept: &mut kept };
-            let mut vertices = Vertices::in_groups(world, surfaces, &groups);
+            let lanes = GroupLanes::new(&groups);
+            let GroupLanes { bsdfs, normal, found, .. } = &lanes;
+            let (axes, chained) = (lanes.axes.each_ref(), Default::default());
+            let (depth, found, normal, glossy) = (step.depth, *found, *normal, 0);
+            let mut vertices =
+                Vertices { world, surfaces, depth, found, bsdfs, axes, normal, glossy, chained };
             let mut light = FoundLight { at_once: true, ..self.light(world, &step, counts) };
             vertices.end_chains_of_groups(&packet, &groups, policy, &mut light);
             let going_on = packet.scatter(&vertices, policy, &mut light);
@@ -202,7 +207,12 @@ impl Batch {
         if followed == 0 || step.depth >= step.max_depth {
             return;
         }
-        let mut vertices = Vertices::one_by_one(world, packet, (surfaces, followed), step.depth, policy);
+        let Seen16 { wo, normal } = packet.seen(surfaces);
+        let mut bsdfs = world.bsdfs(surfaces, wo);
+        let glossy = packet.keep_glossy(&mut bsdfs, followed, policy);
+        let axes = [&surfaces.tangent, &surfaces.bitangent, &surfaces.shading_normal];
+        let (depth, found, bsdfs, chained) = (step.depth, followed, &bsdfs, Default::default());
+        let mut vertices = Vertices { world, surfaces, depth, found, bsdfs, axes, normal, glossy, chained };
         let mut light = self.light(world, &step, counts);
         vertices.end_chains(packet, policy, &mut light);
         let going_on = packet.scatter(&vertices, policy, &mut light);

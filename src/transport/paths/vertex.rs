@@ -24,7 +24,7 @@ use super::guided::Guided;
 use super::packet::{Packet, PathStage};
 use super::policy::{LightSamples, PathPolicy};
 use super::vertices::Vertices;
-use base::math::{Cone, F32x16, LANES, Vec2x16, Vec3x16, lanes_in, mask_of};
+use base::math::{Cone, F32x16, LANES, Rgb, Vec2x16, Vec3x16, lanes_in, mask_of};
 use base::sampling::{Samplers16, power_heuristic};
 use embree::Rays16;
 use world::light::{DirectSamples16, Learned, Receivers16};
@@ -193,8 +193,9 @@ impl Packet {
     #[inline]
     fn go_on<'w, R: PathPolicy<'w>>(&mut self, at: &Vertices, roles: &Roles, samples: &BsdfSamples16) -> u16 {
         let (world, pair) = (at.world, first_pair(at.depth));
+        let (delta, straight) = (samples.delta(), samples.straight());
+        let before = (at.found & straight != 0).then(|| self.clone());
         let (survivals, survives) = self.survive(at.depth, samples);
-        let passed = self.emission_throughput;
         for i in 0..LANES {
             self.throughput.set(i, self.throughput.get(i) * samples.weight.get(i) / survivals[i]);
         }
@@ -202,7 +203,6 @@ impl Packet {
         self.emission_throughput = self.throughput;
         let mut found = at.found & samples.going_on() & survives;
         // Behind a chain's end, only glossy and delta lobes go on.
-        let (delta, straight) = (samples.delta(), samples.straight());
         found &= !roles.scattered | delta | at.glossy;
         self.leave_chains(at, samples, found & roles.at_end, pair + 3);
         // Edges that have left a chain need not be traced if nothing can be found.
@@ -218,10 +218,10 @@ impl Packet {
             self.emission_throughput.keep(self.at(PathStage::Full) | self.at(PathStage::Bent));
         }
         self.leave(at, roles, samples, found);
-        for lane in lanes_in(found & straight) {
-            let share = samples.weight.get(lane) / survivals[lane];
-            self.emission_throughput.set(lane, passed.get(lane) * share);
-            self.gaps[lane] += u32::from(at.bsdfs.lane(lane).passes_gaps_alone());
+        if let Some(before) = before {
+            for lane in lanes_in(found & straight) {
+                self.pass_sheet(at, lane, &before, samples.weight.get(lane) / survivals[lane]);
+            }
         }
         self.enter(world, at.surfaces, found, straight);
         found
@@ -257,30 +257,34 @@ impl Packet {
         }
     }
 
-    /// Begins the next edges. An edge straight through a sheet remains one edge in multiple importance sampling, as
-    /// shadow rays pass sheets too; so it keeps what belongs to its start.
+    /// Begins the next edges.
     #[inline]
     fn leave(&mut self, at: &Vertices, roles: &Roles, samples: &BsdfSamples16, found: u16) {
-        let (surfaces, straight) = (at.surfaces, samples.straight() & found);
+        let surfaces = at.surfaces;
         let directions = at.to_world(&samples.wi);
-        let (mut rays, mut normal) = (Rays16::default(), at.normal);
-        let (mut pdf, mut light_samples) = (samples.pdf, roles.light_samples);
         for i in 0..LANES {
             let (position, normal) = (surfaces.position.get(i), surfaces.normal.get(i));
-            rays.set(i, &shadow::ray_from(position, normal, directions.get(i)));
-        }
-        for i in lanes_in(straight) {
-            let (position, up) = (surfaces.position.get(i), surfaces.normal.get(i));
-            rays.set(i, &beyond(&self.rays.get(i), position, up, surfaces.t[i]));
-            normal.set(i, self.normal.get(i));
-            (pdf[i], light_samples[i]) = (self.pdf[i], self.light_samples[i]);
+            self.rays.set(i, &shadow::ray_from(position, normal, directions.get(i)));
         }
         if at.world.filters_textures() {
-            for i in lanes_in(found & !straight) {
-                continue_cone(&mut self.cones[i], pdf[i], surfaces.t[i]);
+            for i in lanes_in(found) {
+                continue_cone(&mut self.cones[i], samples.pdf[i], surfaces.t[i]);
             }
         }
-        (self.rays, self.normal, self.pdf, self.light_samples) = (rays, normal, pdf, light_samples);
+        (self.normal, self.pdf, self.light_samples) = (at.normal, samples.pdf, roles.light_samples);
+    }
+
+    /// Extends a lane's edge, which was that of `before`, beyond the sheet that it has hit. It remains one edge in
+    /// multiple importance sampling, as shadow rays pass sheets too.
+    fn pass_sheet(&mut self, at: &Vertices, lane: usize, before: &Packet, share: Rgb) {
+        let (position, normal) = (at.surfaces.position.get(lane), at.surfaces.normal.get(lane));
+        self.rays.set(lane, &beyond(&before.rays.get(lane), position, normal, at.surfaces.t[lane]));
+        self.normal.set(lane, before.normal.get(lane));
+        self.pdf[lane] = before.pdf[lane];
+        self.light_samples[lane] = before.light_samples[lane];
+        self.cones[lane] = before.cones[lane];
+        self.emission_throughput.set(lane, before.emission_throughput.get(lane) * share);
+        self.gaps[lane] += u32::from(at.bsdfs.lane(lane).passes_gaps_alone());
     }
 
     /// Continues the paths of `lanes`, scattered at vertex `depth`, with the given probability. Returns the lanes that

@@ -17,9 +17,9 @@ pub(super) struct Vertices<'a, 'w> {
     pub depth: u32,
     /// Lanes with a surface.
     pub found: u16,
-    pub bsdfs: Bsdfs16<'w>,
+    pub bsdfs: &'a Bsdfs16<'w>,
     /// Axes of the shading frames.
-    axes: [Vec3x16; 3],
+    pub axes: [&'a Vec3x16; 3],
     /// Shading normals on the side of arrival; zero where light from both sides counts.
     pub normal: Vec3x16,
     /// Lanes behind a chain's end that go on by glossy and delta lobes alone.
@@ -28,35 +28,47 @@ pub(super) struct Vertices<'a, 'w> {
     pub chained: [LobeSet; LANES],
 }
 
-impl<'a, 'w> Vertices<'a, 'w> {
-    /// Gives each lane of a packet that has hit `surfaces` a BSDF of its own.
-    #[inline]
-    pub fn one_by_one<R: PathPolicy<'w>>(
-        world: &'w World,
-        packet: &Packet,
-        (surfaces, found): (&'a Surfaces16, u16),
-        depth: u32,
-        policy: &R,
-    ) -> Self {
-        let axes = [surfaces.tangent, surfaces.bitangent, surfaces.shading_normal];
-        let (mut wo, mut normal) = (Vec3x16::default(), Vec3x16::default());
+/// Directions towards the eye in shading frames, and shading normals on that side.
+pub(super) struct Seen16 {
+    pub wo: Vec3x16,
+    pub normal: Vec3x16,
+}
+
+/// Lanes of groups: each has the frame, view and BSDF of its group.
+pub(super) struct GroupLanes<'w> {
+    pub axes: [Vec3x16; 3],
+    pub bsdfs: Bsdfs16<'w>,
+    pub normal: Vec3x16,
+    pub found: u16,
+}
+
+impl Packet {
+    /// Returns how the paths see the surfaces that they have hit.
+    #[inline(always)]
+    pub fn seen(&self, surfaces: &Surfaces16) -> Seen16 {
+        let mut seen = Seen16 { wo: Vec3x16::default(), normal: Vec3x16::default() };
         for i in 0..LANES {
             let frame = surfaces.frame(i);
-            let local = frame.to_local(-packet.rays.get(i).direction);
-            wo.set(i, local);
-            normal.set(i, if local.z < 0.0 { -frame.normal } else { frame.normal });
+            let local = frame.to_local(-self.rays.get(i).direction);
+            seen.wo.set(i, local);
+            seen.normal.set(i, if local.z < 0.0 { -frame.normal } else { frame.normal });
         }
-        let mut bsdfs = world.bsdfs(surfaces, wo);
-        let scattered = found & packet.at(PathStage::Scattered);
-        let by_glossy = scattered != 0 && policy.goes_on_by_glossy_lobes();
-        let glossy = if by_glossy { bsdfs.keep_glossy(scattered) } else { 0 };
-        let chained = [LobeSet::default(); LANES];
-        Vertices { world, surfaces, depth, found, bsdfs, axes, normal, glossy, chained }
+        seen
     }
 
-    /// Gives the lanes of each group one BSDF; there is a group. The paths come straight from the eye.
+    /// Reduces BSDFs behind chains' ends to the lobes by which paths go on, and returns their lanes.
     #[inline]
-    pub fn in_groups(world: &'w World, surfaces: &'a Surfaces16, groups: &[Group<'w>]) -> Self {
+    pub fn keep_glossy<'w, R: PathPolicy<'w>>(&self, bsdfs: &mut Bsdfs16, found: u16, policy: &R) -> u16 {
+        let scattered = found & self.at(PathStage::Scattered);
+        let goes_on = scattered != 0 && policy.goes_on_by_glossy_lobes();
+        if goes_on { bsdfs.keep_glossy(scattered) } else { 0 }
+    }
+}
+
+impl<'w> GroupLanes<'w> {
+    /// Gives the lanes of each group one BSDF; there is a group.
+    #[inline]
+    pub fn new(groups: &[Group<'w>]) -> GroupLanes<'w> {
         let (mut axes, mut wo, mut normal) = ([Vec3x16::ZERO; 3], Vec3x16::ZERO, Vec3x16::ZERO);
         let (mut group_of, mut found) = ([0; LANES], 0);
         for (index, group) in groups.iter().enumerate() {
@@ -69,28 +81,23 @@ impl<'a, 'w> Vertices<'a, 'w> {
             lanes_in(group.lanes).for_each(|lane| group_of[lane] = index);
             found |= group.lanes;
         }
-        let bsdfs = Bsdfs16::new(wo, |lane| groups[group_of[lane]].bsdf);
-        let (chained, glossy) = ([LobeSet::default(); LANES], 0);
-        Vertices { world, surfaces, depth: 1, found, bsdfs, axes, normal, glossy, chained }
+        GroupLanes { axes, bsdfs: Bsdfs16::new(wo, |lane| groups[group_of[lane]].bsdf), normal, found }
     }
+}
+
+impl<'w> Vertices<'_, 'w> {
     /// Returns directions in the shading frames.
-    #[inline]
+    #[inline(always)]
     pub fn to_local(&self, directions: &Vec3x16) -> Vec3x16 {
-        let mut local = Vec3x16::default();
-        for i in 0..LANES {
-            local.set(i, self.frame(i).to_local(directions.get(i)));
-        }
-        local
+        let (d, [x, y, z]) = (directions.load(), self.axes.map(Vec3x16::load));
+        V3::new(d.dot(x), d.dot(y), d.dot(z)).into()
     }
 
     /// Returns directions of the shading frames in the world.
-    #[inline]
+    #[inline(always)]
     pub fn to_world(&self, directions: &Vec3x16) -> Vec3x16 {
-        let mut world = Vec3x16::default();
-        for i in 0..LANES {
-            world.set(i, self.frame(i).to_world(directions.get(i)));
-        }
-        world
+        let (d, [x, y, z]) = (directions.load(), self.axes.map(Vec3x16::load));
+        (x.times(d.x) + y.times(d.y) + z.times(d.z)).into()
     }
 
     /// Returns the surface point of a lane.
