@@ -221,7 +221,7 @@ impl<'m> Bsdf<'m> {
         self.base
     }
 
-    /// Returns the factor on the lobe in a slot below [`MAX_LOBES`].
+    /// Returns the factor on the lobe in a slot below `MAX_LOBES`.
     #[inline]
     pub fn lobe_scale(&self, slot: usize) -> Rgb {
         self.scales[slot]

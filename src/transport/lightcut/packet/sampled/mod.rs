@@ -114,7 +114,7 @@ struct Pending {
     rays: Rays16,
     light: Vec3x16,
     factors: F32x16,
-    /// Maximum numbers of sheets that the samples' light passes (see [`Receiver::sheets`]).
+    /// Maximum numbers of sheets that the samples' light passes (see [`crate::lightcut::Receiver::sheets`]).
     sheets: [Option<u32>; LANES],
     /// Lanes of the samples' points.
     points: [u8; LANES],
