@@ -89,19 +89,20 @@ impl Packet {
         policy: &R,
         light: &mut FoundLight,
     ) -> u16 {
-        let roles = self.roles(at, policy);
+        let (roles, pair) = (self.roles(at, policy), first_pair(at.depth));
         let (requested, mut lanes) = (policy.light_samples(), roles.lit);
+        let choices = self.samplers.point(pair + 2);
         for sample in 0..requested.count {
             if lanes != 0 {
                 let samplers = self.light_samplers(&roles, requested, sample);
-                let pair = first_pair(at.depth);
-                let (u_choice, u_place) = (samplers.number(pair + 2), samplers.point(pair));
-                let step = LightStep { lanes, u_choice, u_place, learned: policy.learned() };
+                let u_choice = if roles.many == 0 { choices.x } else { samplers.number(pair + 2) };
+                let step =
+                    LightStep { lanes, u_choice, u_place: samplers.point(pair), learned: policy.learned() };
                 self.sample_light(at, &roles, &step, light);
             }
             lanes &= roles.many;
         }
-        let samples = self.choose(at, &roles.guided);
+        let samples = self.choose(at, &roles.guided, &choices.y);
         self.go_on::<R>(at, &roles, &samples)
     }
 
@@ -179,10 +180,9 @@ impl Packet {
 
     /// Samples the next directions by the BSDFs, or by a mixture with directions aimed at mirrors and glass.
     #[inline]
-    fn choose(&self, at: &Vertices, guided: &Guided) -> BsdfSamples16 {
-        let pair = first_pair(at.depth);
-        let (choices, places) = (self.samplers.point(pair + 2).y, self.samplers.point(pair + 1));
-        let mut samples = at.bsdfs.sample(&choices, &places, at.found);
+    fn choose(&self, at: &Vertices, guided: &Guided, choices: &F32x16) -> BsdfSamples16 {
+        let places = self.samplers.point(first_pair(at.depth) + 1);
+        let mut samples = at.bsdfs.sample(choices, &places, at.found);
         for lane in lanes_in(guided.lanes) {
             guided.turn(at.world, &at.lane(lane), choices[lane], places.get(lane), &mut samples);
         }
