@@ -5,6 +5,7 @@
 //! - [`emission`] samples the beginnings of photon paths at emitters, and traces them;
 //! - [`lights`] turns emitters and photons into virtual point lights, and clusters them in trees;
 //! - [`caustics`] traces photons over mirrors and through glass to the surfaces behind;
+//! - [`learning`] learns which emitters light the visible points;
 //! - [`paths`] traces paths from the eye in packets;
 //! - [`eye`] finds the points that scatter light into each pixel, through mirrors and glass;
 //! - [`lightcut`] gathers the light of a tree at a point to a given error, or reconstructs it from its neighbours'
@@ -24,6 +25,7 @@ pub mod emission;
 pub mod eye;
 pub mod gradient;
 pub mod hsh;
+pub mod learning;
 pub mod lightcut;
 pub mod lights;
 pub mod paths;

@@ -1,4 +1,4 @@
-//! Store of virtual lights and photons, which methods share from frame to frame.
+//! Store of virtual lights, photons and learned light, which methods share from frame to frame.
 
 use super::memo::{Memo, forget, recall};
 use super::photon_store::PhotonStore;
@@ -6,7 +6,9 @@ use super::tally::Tally;
 use crate::method::Sampling;
 use base::progress::Control;
 use std::sync::Arc;
+use transport::learning::{LearnedLight, Learning};
 use transport::lights::{Family, LightPassSettings, Lights, LightsWanted};
+use world::view::View;
 use world::{SurfacePoint, World};
 
 /// Returns the parameters of virtual lights for the indirect light of the points `seen`; of all points if it is empty.
@@ -23,10 +25,11 @@ pub fn lights_wanted(
     LightsWanted { pass, family, max_depth: world.scene.path_limit(sampling.max_depth), seen }
 }
 
-/// Virtual lights and photons of the last frame. Frames reuse them if they want the same ones.
+/// Virtual lights, photons and learned light of the last frame. Frames reuse them if they want the same ones.
 #[derive(Default)]
 pub struct LightStore {
     lights: Memo<LightsWanted, Lights>,
+    learned: Memo<Learning, LearnedLight>,
     /// Caustic photons.
     pub photons: PhotonStore,
 }
@@ -35,7 +38,21 @@ impl LightStore {
     /// Drops all lights and photons.
     pub fn forget(&self) {
         forget(&self.lights);
+        forget(&self.learned);
         self.photons.forget();
+    }
+
+    /// Returns what is learned of the light in a view for images with `spp` samples per pixel, whose paths sample light
+    /// on `points` surfaces at most.
+    pub fn learned(
+        &self,
+        world: &World,
+        view: &View,
+        [spp, points]: [u32; 2],
+        control: &Control,
+    ) -> Arc<LearnedLight> {
+        let wanted = Learning::new(view, spp, points);
+        recall(&self.learned, wanted, control, |wanted| wanted.learn(world, view, control))
     }
 
     /// Returns the virtual lights of `world`, and makes them if others were made last.

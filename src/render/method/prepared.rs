@@ -6,7 +6,8 @@ use super::tally::Tally;
 use base::progress::Control;
 use base::stats::Stage;
 use std::sync::Arc;
-use transport::eye::{DirectSampling, EyePass, ShadingPoints, TILE};
+use transport::eye::{DirectSampling, EyePass, LightSources, ShadingPoints, TILE};
+use transport::learning::LearnedLight;
 use transport::lights::{Family, LightPassSettings, Lights};
 use world::view::View;
 use world::{SurfacePoint, World};
@@ -64,11 +65,23 @@ impl<'w> Prepared<'w> {
         let mut tally = Tally::default();
         let settings = sampling.eye(&world.scene);
         let caustics = lights.photons.for_image(world, view, settings, control, &mut tally);
-        control.begin(Stage::EyePass, view.window.tile_count(TILE) as u64);
-        let eye = tally.time(Stage::EyePass, || {
-            EyePass::of(world, view, settings, direct.as_ref(), caustics.as_ref(), control)
+        let known = direct.as_ref().map(|direct| {
+            let learn = || learned(world, lights, view, sampling.spp, control);
+            (direct, tally.time(Stage::EyePass, learn))
         });
+        let sources = known.as_ref().map(|(direct, known)| LightSources {
+            direct,
+            caustics: caustics.as_ref(),
+            learned: known.light.as_ref(),
+        });
+        control.begin(Stage::EyePass, view.window.tile_count(TILE) as u64);
+        let eye = tally
+            .time(Stage::EyePass, || EyePass::of(world, view, settings, sources, caustics.as_ref(), control));
         tally.eye(&eye.chains);
+        if let Some((_, known)) = &known {
+            tally.rays(known.counts.rays);
+            tally.shadow_rays("Rays/shadow", known.counts.shadow_rays);
+        }
         if direct.is_some() {
             tally.count("Eye/light samples", eye.light_samples.into());
         }
@@ -82,6 +95,19 @@ impl<'w> Prepared<'w> {
         let lights = lights.get(world, wanted, control, &mut tally);
         Prepared { eye, lights, tally }
     }
+}
+
+/// Returns what is learned of the light in a view for an eye pass with `spp` samples per pixel. Paths go on beyond
+/// their first hits only if something bends light.
+pub fn learned(
+    world: &World,
+    lights: &LightStore,
+    view: &View,
+    spp: u32,
+    control: &Control,
+) -> Arc<LearnedLight> {
+    let points = if world.specular.bends_light() { 2 } else { 1 };
+    lights.learned(world, view, [spp, points], control)
 }
 
 /// Returns about `most` points whose indirect light photons are planned for; none if no light comes from infinitely

@@ -144,7 +144,14 @@ pub trait Resumes {
     /// Renders the missing samples of `partial`, an image of the same settings and `view`.
     ///
     /// The result has the bits of an image that was not interrupted.
-    fn render_rest(&self, world: &World, partial: &PartialImage, view: &View, control: &Control) -> Output;
+    fn render_rest(
+        &self,
+        world: &World,
+        lights: &LightStore,
+        partial: &PartialImage,
+        view: &View,
+        control: &Control,
+    ) -> Output;
 }
 
 /// Renders one image of `view` with virtual lights of its own.

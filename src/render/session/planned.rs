@@ -118,7 +118,7 @@ fn as_set(context: &FrameContext, goal: &Goal, former: Former) -> Made {
         Former::Samples(partial) => {
             seconds += partial.seconds;
             let output = match method.as_resumes() {
-                Some(resumes) => resumes.render_rest(world, &partial, view, control),
+                Some(resumes) => resumes.render_rest(world, lights, &partial, view, control),
                 None => method.render(world, lights, view, control),
             };
             finish.apply(&method, output)

@@ -4,12 +4,10 @@
 //! shading points, whose indirect light remains to be found.
 //!
 //! All pixels first get the same number of samples, twice if a pilot finds that this pays ([`extra`]). Pixels in
-//! high-contrast surroundings then get more ([`adaptive`]). A pilot learns beforehand which emitters each region of the
-//! scene sees ([`learn`]).
+//! high-contrast surroundings then get more ([`adaptive`]).
 //!
 //! [`adaptive`]: super::adaptive
 //! [`extra`]: super::extra
-//! [`learn`]: super::learn
 
 use super::guides::Guide;
 use super::merge::{MergedPoint, MergedPoints, merge};
@@ -42,13 +40,11 @@ impl<'w> EyePass<'w> {
         let settings = EyeSettings { spp: settings.spp.max(1), ..settings };
         let mut counts = RayCounts::default();
         let mut tracer = Tracer::new(world, view, settings, sources, control, &mut counts);
-        let found = tracer.learn(settings.seed, 1);
-        let learned = found.as_ref().map(|(learned, _)| learned);
-        let effort = tracer.effort(learned);
+        let effort = tracer.effort();
         tracer.light_samples.count = effort.as_ref().map_or(1, |effort| effort.light_samples);
         let rounds = effort.as_ref().map_or(1, |effort| effort.rounds);
         tracer.settings.spp *= rounds;
-        let works = Workspaces::new(|| tracer.workspace_with_guides(learned));
+        let works = Workspaces::new(|| tracer.workspace_with_guides());
         let live = control.live([view.window.width, view.window.height]);
         let first = |index| {
             if control.is_cancelled() {
@@ -63,7 +59,7 @@ impl<'w> EyePass<'w> {
         };
         let tiles = (0..view.window.tile_count(TILE)).into_par_iter().one_by_one();
         let tiles: Vec<SampledTile> = tiles.map(first).flatten().collect();
-        let needs = effort.as_ref().and_then(|effort| tracer.needs(effort, &tiles, learned));
+        let needs = effort.as_ref().and_then(|effort| tracer.needs(effort, &tiles));
         let all_traced = tiles.len() == view.window.tile_count(TILE);
         let parts = |tile| tracer.tile_parts(tile, needs.as_ref());
         let parts: Vec<Vec<TilePart>> = tiles.into_par_iter().one_by_one().map(parts).collect();
@@ -73,9 +69,6 @@ impl<'w> EyePass<'w> {
         let mut pass = EyePass::gather(&view.window, surfaces, 1, all_traced, control);
         pass.chains.rays += counts.rays;
         pass.chains.shadow_rays += counts.shadow_rays;
-        if let Some((_, chains)) = &found {
-            pass.chains += *chains;
-        }
         if let Some(needs) = needs {
             pass.chains += needs.chains;
         }

@@ -2,6 +2,7 @@
 
 use super::{ExtraSamples, Settled};
 use crate::caustics::Caustics;
+use world::light::Learned;
 
 /// Order for direct light that the eye pass samples.
 #[derive(Clone, Debug, Default)]
@@ -24,4 +25,6 @@ pub struct LightSources<'a> {
     pub direct: &'a DirectSampling,
     /// Photons by mirrors and glass, if there are any.
     pub caustics: Option<&'a Caustics>,
+    /// Learned light that guides light samples.
+    pub learned: Option<&'a Learned>,
 }

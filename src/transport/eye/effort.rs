@@ -12,7 +12,6 @@ use crate::paths::LightSamples;
 use base::math::{Rgb, luminance};
 use base::parallel::{ShortRuns, Workspaces};
 use rayon::prelude::*;
-use world::light::Learned;
 
 /// Maximum number of first samples that may be followed by more, so that sample numbers fit into 32 bits.
 const MAX_ADAPTIVE: u32 = u32::MAX / 4;
@@ -48,7 +47,7 @@ type Means = Vec<Vec<[f32; 2]>>;
 
 impl<'w> Tracer<'_, 'w> {
     /// Runs the pilot; returns `None` with a single sample per pixel, or with so many that no pixel needs more.
-    pub(super) fn effort(&mut self, learned: Option<&Learned>) -> Option<Effort> {
+    pub(super) fn effort(&mut self) -> Option<Effort> {
         let EyeSettings { spp, seed, .. } = self.settings;
         if !(2..=MAX_ADAPTIVE).contains(&spp) {
             return None;
@@ -56,9 +55,9 @@ impl<'w> Tracer<'_, 'w> {
         let squares = pilot(self.view.window.film);
         let pixels: Vec<Vec<[u32; 2]>> =
             squares.iter().map(|square| square.film_pixels().collect()).collect();
-        let (values, traced) = self.luminances(pixels.clone(), seed ^ PILOT_SEED, learned);
+        let (values, traced) = self.luminances(pixels.clone(), seed ^ PILOT_SEED);
         self.light_samples.first = SECOND_PASS_OFFSET;
-        let (again, traced_again) = self.luminances(pixels, seed ^ PILOT_SEED, learned);
+        let (again, traced_again) = self.luminances(pixels, seed ^ PILOT_SEED);
         self.light_samples = LightSamples::ONE;
         let chains: EyeCounts = traced.into_iter().chain(traced_again).sum();
         let means = |group: &Vec<[f32; 2]>| group.iter().map(|[mean, _]| *mean).collect();
@@ -80,14 +79,9 @@ impl<'w> Tracer<'_, 'w> {
 
     /// Returns the luminances that the first samples of groups of film pixels find, by all of them and by the first
     /// half, and the rays of each group. Luminances are 0 once cancelled.
-    pub(super) fn luminances(
-        &self,
-        groups: Vec<Vec<[u32; 2]>>,
-        seed: u32,
-        learned: Option<&Learned>,
-    ) -> (Means, Vec<EyeCounts>) {
+    pub(super) fn luminances(&self, groups: Vec<Vec<[u32; 2]>>, seed: u32) -> (Means, Vec<EyeCounts>) {
         let spp = self.settings.spp;
-        let works = Workspaces::new(|| self.workspace(learned));
+        let works = Workspaces::new(|| self.workspace());
         let look = |pixels: Vec<[u32; 2]>| {
             let mut sums = vec![[Rgb::ZERO; 2]; pixels.len()];
             if self.control.is_cancelled() {

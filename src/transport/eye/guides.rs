@@ -12,6 +12,7 @@ use base::math::Rgb;
 use glam::Vec3;
 use rayon::prelude::*;
 use world::World;
+use world::light::Learned;
 use world::view::View;
 
 /// Maximum code of a packed value.
@@ -132,13 +133,19 @@ impl FirstSurfaces {
 
 /// Policy of full paths from the eye.
 #[derive(Default)]
-pub struct FullPaths {
+pub struct FullPaths<'a> {
+    /// Learned light that guides light samples.
+    pub learned: Option<&'a Learned>,
     /// First surfaces, if guides are requested.
     pub first_surfaces: Option<FirstSurfaces>,
 }
 
-impl PathPolicy<'_> for FullPaths {
+impl PathPolicy<'_> for FullPaths<'_> {
     const STOPS_AT_DIFFUSE: bool = false;
+
+    fn learned(&self) -> Option<&Learned> {
+        self.learned
+    }
 
     fn sees(&self) -> bool {
         self.first_surfaces.is_some()
@@ -172,7 +179,7 @@ mod tests {
                 &world,
                 &view,
                 settings,
-                LightSources { direct: &direct, caustics: None },
+                LightSources { direct: &direct, caustics: None, learned: None },
                 &Control::new(),
             );
             let Some(guides) = pass.guides else {

@@ -13,7 +13,6 @@ mod features;
 mod first_hits;
 mod guide;
 mod guides;
-mod learn;
 mod merge;
 mod more;
 mod needs;

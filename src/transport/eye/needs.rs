@@ -5,7 +5,6 @@ use super::adaptive::{AdaptiveRule, Luminances};
 use super::effort::Effort;
 use super::tracer::{BATCH, SampledTile, Tracer};
 use base::math::luminance;
-use world::light::Learned;
 
 /// Result of the first samples that decides where more are taken.
 pub(super) struct Needs {
@@ -18,12 +17,7 @@ pub(super) struct Needs {
 
 impl<'w> Tracer<'_, 'w> {
     /// Determines which pixels need more samples than the first; returns `None` if no pixel gets more.
-    pub(super) fn needs(
-        &self,
-        effort: &Effort,
-        tiles: &[SampledTile],
-        learned: Option<&Learned>,
-    ) -> Option<Needs> {
+    pub(super) fn needs(&self, effort: &Effort, tiles: &[SampledTile]) -> Option<Needs> {
         let (choice, seed) = (effort.choice?, self.settings.seed);
         let (window, near) = (&self.view.window, self.view.window.grown(1));
         let mut luminances = Luminances { values: vec![0.0; near.pixel_count() as usize], window: near };
@@ -39,7 +33,7 @@ impl<'w> Tracer<'_, 'w> {
             false => near.film_pixels().filter(is_beside).collect(),
         };
         let beside: Vec<Vec<[u32; 2]>> = beside.chunks(BATCH as usize).map(<[_]>::to_vec).collect();
-        let (values, chains) = self.luminances(beside.clone(), seed, learned);
+        let (values, chains) = self.luminances(beside.clone(), seed);
         beside
             .iter()
             .flatten()

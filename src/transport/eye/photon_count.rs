@@ -44,13 +44,14 @@ impl EyePass<'_> {
             settings,
             direct: &direct,
             caustics: Some(few),
+            learned: None,
             edges,
             light_samples,
             control,
         };
         let squares = adaptive::pilot(view.window.film);
         let pixels = squares.iter().map(|square| square.film_pixels().collect()).collect();
-        let (_, found) = tracer.luminances(pixels, settings.seed ^ SEED, None);
+        let (_, found) = tracer.luminances(pixels, settings.seed ^ SEED);
         let mean = found.iter().map(|square| square.light).sum::<f64>() / found.len().max(1) as f64;
         let part = |square: &EyeCounts| square.by_photons / (square.light + DARK * mean);
         let squared = found.iter().map(part).filter(|part| part.is_finite()).map(|part| part * part);

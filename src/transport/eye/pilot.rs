@@ -11,9 +11,6 @@ use world::view::View;
 /// Seeds of the two sets of samples, combined with the seed of the settings.
 const SEEDS: [u32; 2] = [0x7ab3_11d5, 0x0c94_e2f7];
 
-/// Divisor of the number of paths that learn emitters, since few pixels need less accuracy.
-const PATH_DIVISOR: u64 = 4;
-
 /// Light that photons find in a pixel.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ByPhotons {
@@ -31,8 +28,8 @@ pub struct EyePilot {
     pub photons: Vec<ByPhotons>,
     /// Rays of the samples.
     pub sampled: EyeCounts,
-    /// Rays of the learning passes before.
-    pub learned: EyeCounts,
+    /// Rays of the pilot before.
+    pub before: RayCounts,
 }
 
 impl EyePass<'_> {
@@ -47,14 +44,9 @@ impl EyePass<'_> {
     ) -> EyePilot {
         let mut counts = RayCounts::default();
         let tracer = Tracer::new(world, view, settings, sources, control, &mut counts);
-        let found = tracer.learn(settings.seed, PATH_DIVISOR);
-        let mut learned = found.as_ref().map_or(EyeCounts::default(), |(_, chains)| *chains);
-        learned.rays += counts.rays;
-        learned.shadow_rays += counts.shadow_rays;
-        let emitters = found.as_ref().map(|(learned, _)| learned);
         let mut traced = vec![EyeCounts::default(); groups.len()];
         let luminances = SEEDS.map(|seed| {
-            let (values, chains) = tracer.luminances(groups.to_vec(), settings.seed ^ seed, emitters);
+            let (values, chains) = tracer.luminances(groups.to_vec(), settings.seed ^ seed);
             traced.iter_mut().zip(chains).for_each(|(sum, chains)| *sum += chains);
             values.into_iter().map(|group| group.into_iter().map(|[mean, _]| mean).collect()).collect()
         });
@@ -63,6 +55,6 @@ impl EyePass<'_> {
             ByPhotons { mean: chains.by_photons / samples, square: chains.square_by_photons / samples }
         };
         let photons = groups.iter().zip(&traced).map(by_photons).collect();
-        EyePilot { luminances, photons, sampled: traced.into_iter().sum(), learned }
+        EyePilot { luminances, photons, sampled: traced.into_iter().sum(), before: counts }
     }
 }

@@ -178,7 +178,7 @@ fn drawn_with<'w>(world: &'w World, view: &View, spp: u32, extra_samples: f32) -
         world,
         view,
         settings,
-        LightSources { direct: &direct, caustics: None },
+        LightSources { direct: &direct, caustics: None, learned: None },
         &Control::new(),
     )
 }

@@ -39,6 +39,7 @@ pub(super) struct Tracer<'a, 'w> {
     pub(super) settings: EyeSettings,
     pub(super) direct: &'a DirectSampling,
     pub(super) caustics: Option<&'a Caustics>,
+    pub(super) learned: Option<&'a Learned>,
     pub(super) edges: ScatteredEdges,
     pub(super) light_samples: LightSamples,
     pub(super) control: &'a Control,
@@ -135,17 +136,18 @@ impl<'a, 'w> Tracer<'a, 'w> {
         control: &'a Control,
         counts: &mut RayCounts,
     ) -> Tracer<'a, 'w> {
-        let LightSources { direct, caustics } = sources;
+        let LightSources { direct, caustics, learned } = sources;
         let (edges, light_samples) = (ScatteredEdges::default(), LightSamples::ONE);
-        let mut tracer = Tracer { world, view, settings, direct, caustics, edges, light_samples, control };
-        let all = || tracer.workspace(None).ends;
+        let mut tracer =
+            Tracer { world, view, settings, direct, caustics, learned, edges, light_samples, control };
+        let all = || tracer.workspace().ends;
         tracer.edges = guide::edges(world, view, settings, all, caustics, counts);
         tracer
     }
 
-    pub(super) fn workspace<'b>(&'b self, learned: Option<&'b Learned>) -> TracerWorkspace<'b, 'w> {
+    pub(super) fn workspace(&self) -> TracerWorkspace<'_, 'w> {
         let spacing_by_distance = SPACING * self.view.pixel_angle();
-        let Tracer { direct, caustics, edges, light_samples, .. } = *self;
+        let Tracer { direct, caustics, learned, edges, light_samples, .. } = *self;
         let max_depth = if self.world.has_sheets() { self.settings.max_depth } else { u32::MAX };
         let ends = FirstHits {
             direct,
@@ -165,11 +167,8 @@ impl<'a, 'w> Tracer<'a, 'w> {
     }
 
     /// Returns buffers for samples that compute guides, if guides are requested.
-    pub(super) fn workspace_with_guides<'b>(
-        &'b self,
-        learned: Option<&'b Learned>,
-    ) -> TracerWorkspace<'b, 'w> {
-        let mut workspace = self.workspace(learned);
+    pub(super) fn workspace_with_guides(&self) -> TracerWorkspace<'_, 'w> {
+        let mut workspace = self.workspace();
         workspace.ends.first_surfaces = self.finds_guides().then(FirstSurfaces::default);
         workspace
     }

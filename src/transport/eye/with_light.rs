@@ -1,6 +1,6 @@
 //! The eye pass of a method: with direct light if it is sampled, and with the light that comes by mirrors and glass.
 
-use super::{DirectSampling, EyePass, EyeSettings, LightBySpecularLobes, LightSources};
+use super::{EyePass, EyeSettings, LightBySpecularLobes, LightSources};
 use crate::caustics::Caustics;
 use base::progress::Control;
 use base::stats::Contributions;
@@ -9,24 +9,18 @@ use world::view::View;
 
 impl<'w> EyePass<'w> {
     /// Traces the eye rays of every pixel in the view's window, and finds the light that comes by mirrors and glass.
-    /// Direct light is included if `direct` orders it.
+    /// Direct light is included if it is ordered.
     pub fn of(
         world: &'w World,
         view: &View,
         settings: EyeSettings,
-        direct: Option<&DirectSampling>,
+        direct: Option<LightSources>,
         caustics: Option<&Caustics>,
         control: &Control,
     ) -> EyePass<'w> {
         match direct {
             Some(direct) => {
-                let mut pass = EyePass::with_direct_light(
-                    world,
-                    view,
-                    settings,
-                    LightSources { direct, caustics },
-                    control,
-                );
+                let mut pass = EyePass::with_direct_light(world, view, settings, direct, control);
                 let found = pass.known.luminance();
                 pass.contributions.add(Contributions::PHOTONS, pass.chains.by_photons(found));
                 pass.contributions.rest("eye samples", found);

@@ -324,8 +324,7 @@ impl Batch {
         let (origins, learned) = (packet.rays.origins(), policy.learned());
         let at = Receivers16 { position: &origins, normal: &packet.normal, learned };
         let choice = world.emitters.environment_choice(at);
-        let guided = learned.and_then(|learned| learned.sky.as_ref()).map(|sky| (sky, &origins));
-        let light = environment.radiance_pdf16(&packet.rays.directions(), escaped, guided);
+        let light = environment.radiance_pdf16(&packet.rays.directions(), escaped, at.sky());
         for lane in lanes_in(escaped) {
             let (radiance, pdf) = light[lane];
             let share = packet.share_of_paths(lane, radiance, policy);

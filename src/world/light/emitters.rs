@@ -3,9 +3,11 @@
 use super::area::AreaLight;
 use super::delta::DeltaEmitter;
 use super::environment::EnvironmentLight;
+use super::learned::Learned;
+use super::observed::{LightRays, Observed};
 use super::receivers::Receivers16;
 use super::select::EmitterChoice;
-use super::tree::{EmitterBounds, EmitterObservations, LearnedEmitters};
+use super::tree::EmitterBounds;
 use base::math::{F32x16, LANES, U32x16, Vec3x16, mask_of};
 use glam::Vec3;
 use scene::{DeltaLight, Scene};
@@ -108,9 +110,14 @@ impl Emitters {
         self.areas.len() + self.deltas.len() >= MIN_HIDDEN
     }
 
-    /// Learns the visibility of all emitters but the environment; `None` if nearly all are visible from everywhere.
-    pub fn learn_emitters(&self, observations: &EmitterObservations) -> Option<LearnedEmitters> {
-        self.choice.learn(observations)
+    /// Learns from what observers at some positions saw in some waves of rays.
+    pub fn learn(&self, observers: &[Vec3], waves: &[LightRays]) -> Learned {
+        let observed = Observed::new(observers, waves, self.choice.fewest_observers(observers.len()));
+        Learned {
+            sky: self.environment.as_ref().map(|environment| environment.learn(&observed)),
+            emitters: self.choice.learn(&observed),
+            regions: observed.regions,
+        }
     }
 
     /// Returns the lanes whose rays, of unit direction, may hit an emitting surface.

@@ -117,8 +117,7 @@ impl Emitters {
         samples: &mut DirectSamples16,
     ) {
         let Some(environment) = &self.environment else { return };
-        let sky = at.learned.and_then(|learned| learned.sky.as_ref()).map(|sky| (sky, at.position));
-        let found = environment.sample16(u, wanted, sky);
+        let found = environment.sample16(u, wanted, at.sky());
         let mask = Mask16::of(wanted);
         samples.direction.put(mask, found.direction.load());
         samples.radiance.put(mask, found.radiance.load());

@@ -1,5 +1,6 @@
 //! Sixteen points that gather light.
 
+use super::environment::LearnedAt;
 use super::learned::Learned;
 use base::math::{LANES, Vec3x16};
 
@@ -18,7 +19,16 @@ impl<'a> Receivers16<'a> {
     /// Returns the learned factors on the importance of emitters, by lane; `None` if they are not used.
     #[inline]
     pub(super) fn emitter_factors(&self) -> Option<[&'a [f32]; LANES]> {
-        let emitters = self.learned.and_then(|learned| learned.emitters.as_ref())?;
-        Some(emitters.at(self.position))
+        let learned = self.learned?;
+        let emitters = learned.emitters.as_ref()?;
+        Some(emitters.at(&learned.regions(self.position)))
+    }
+
+    /// Returns the learned distributions over tiles of the environment, by lane; `None` if they are not used.
+    #[inline]
+    pub fn sky(&self) -> LearnedAt<'a> {
+        let learned = self.learned?;
+        let sky = learned.sky.as_ref()?;
+        Some(sky.at(&learned.regions(self.position)))
     }
 }

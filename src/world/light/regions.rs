@@ -119,6 +119,53 @@ impl Regions {
         }
         node.map(|node| (self.nodes[node].word >> 2) as usize)
     }
+
+    /// Estimates means by region and slot. `add` adds the sums and counts of a region's samples. A node's mean is that
+    /// of its samples and of `prior` more, which have the mean of the node above. Above the root it is `above`.
+    pub fn means<A: Fn(usize, &mut [[f32; 2]]) + Sync>(
+        &self,
+        add: A,
+        prior: f32,
+        above: &[f32],
+    ) -> Vec<Vec<f32>> {
+        let regions = self.nodes.iter().filter(|node| node.word & LEAF == LEAF).count();
+        let mut found = vec![Vec::new(); regions];
+        self.shrink(0, 0, &mut found, &Shrinkage { add, prior }, above);
+        found
+    }
+
+    /// Writes the means of the regions below a node, of which `first` is the first.
+    fn shrink<A: Fn(usize, &mut [[f32; 2]]) + Sync>(
+        &self,
+        node: usize,
+        first: usize,
+        found: &mut [Vec<f32>],
+        by: &Shrinkage<A>,
+        above: &[f32],
+    ) {
+        let mut sums = vec![[0.0; 2]; above.len()];
+        (first..first + found.len()).for_each(|region| (by.add)(region, &mut sums));
+        let shrunk = |([sum, count], above): (&[f32; 2], &f32)| (sum + by.prior * above) / (count + by.prior);
+        let means: Vec<f32> = sums.iter().zip(above).map(shrunk).collect();
+        let at = self.nodes[node];
+        if at.word & LEAF == LEAF {
+            found[0] = means;
+            return;
+        }
+        let second = (at.word >> 2) as usize;
+        let leaves = self.nodes[node + 1..second].iter().filter(|node| node.word & LEAF == LEAF).count();
+        let (left, right) = found.split_at_mut(leaves);
+        rayon::join(
+            || self.shrink(node + 1, first, left, by, &means),
+            || self.shrink(second, first + leaves, right, by, &means),
+        );
+    }
+}
+
+/// Samples of regions, and the weight of a node's mean in those below it, in samples.
+struct Shrinkage<A> {
+    add: A,
+    prior: f32,
 }
 
 #[cfg(test)]

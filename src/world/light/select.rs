@@ -8,8 +8,9 @@ use super::area::AreaLight;
 use super::delta::DeltaEmitter;
 use super::distribution::DiscreteDistribution;
 use super::environment::EnvironmentLight;
+use super::observed::Observed;
 use super::receivers::Receivers16;
-use super::tree::{BY_POWER, EmitterObservations, EmitterTree, LearnedEmitters, PointAndNormal};
+use super::tree::{BY_POWER, EmitterTree, LearnedEmitters, MAX_FACTORS, PointAndNormal};
 use base::math::{F32x16, LANES, U32x16, lanes_in};
 use std::f32::consts::PI;
 
@@ -66,8 +67,13 @@ impl EmitterChoice {
     }
 
     /// Learns the visibility of the emitters in the tree; `None` if nearly all are visible from everywhere.
-    pub fn learn(&self, observations: &EmitterObservations) -> Option<LearnedEmitters> {
-        LearnedEmitters::new(&self.tree, observations)
+    pub fn learn(&self, observed: &Observed) -> Option<LearnedEmitters> {
+        LearnedEmitters::new(&self.tree, observed)
+    }
+
+    /// Returns the minimum number of observers in a region, of so many in all, for which factors fit into memory.
+    pub fn fewest_observers(&self, observers: usize) -> usize {
+        observers.saturating_mul(self.tree.slots()) / MAX_FACTORS
     }
 
     /// Chooses an emitter for each lane of `wanted`. Returns the emitters and their probabilities, which are zero if no

@@ -80,18 +80,18 @@ fn emitters(scene: &Scene) -> Emitters {
 /// Returns the learned visibility if two of three emitters are hidden from all points of positive x.
 fn learned(emitters: &Emitters) -> Learned {
     let count = emitters.environment_index();
-    let mut observations = EmitterObservations::default();
+    let (mut observers, mut rays) = (Vec::new(), LightRays::default());
     for point in 0..4096 {
         let mut sampler = Sampler::new(8, point);
         let (place, z) = (sampler.next_2d(), sampler.next_1d());
         let x = 14.0 * place.extend(z) - 7.0;
-        observations.points.push(x);
-        observations.rays.extend((0..32).map(|ray| {
+        observers.push(x);
+        rays.emitters.extend((0..32).map(|ray| {
             let lamp = (point * 32 + ray) * 97 % count;
             (ray % 3 > 0).then_some((lamp, is_seen(lamp as usize, x)))
         }));
     }
-    Learned { sky: None, emitters: emitters.learn_emitters(&observations) }
+    emitters.learn(&observers, &[rays])
 }
 
 fn is_seen(lamp: usize, x: Vec3) -> bool {

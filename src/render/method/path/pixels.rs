@@ -7,8 +7,10 @@ use base::progress::Control;
 use glam::DVec3;
 use rayon::prelude::*;
 use transport::eye::FullPaths;
+use transport::learning::LearnedLight;
 use transport::paths::{Batch, Estimand, PathStart, RayCounts, start};
 use world::World;
+use world::light::Learned;
 use world::view::View;
 
 /// Maximum number of paths of one pixel in a batch.
@@ -29,13 +31,15 @@ pub struct PixelPaths {
 
 /// Sampling of single pixels.
 #[derive(Clone, Copy, Debug)]
-pub struct PixelSampling {
+pub struct PixelSampling<'a> {
     /// Quantity that a pixel estimates.
     pub estimand: Estimand,
     /// Seed; another one gives independent means.
     pub seed: u32,
     /// Maximum path length in edges.
     pub max_depth: u32,
+    /// Learned light that guides light samples.
+    pub learned: Option<&'a Learned>,
 }
 
 /// Computes the mean radiance of each pixel over its paths.
@@ -48,17 +52,18 @@ pub fn pixel_means(
     wanted: &[PixelPaths],
     counts: &mut RayCounts,
 ) -> (Vec<DVec3>, u64) {
-    let PixelSampling { estimand, seed, max_depth } = sampling;
+    let PixelSampling { estimand, seed, max_depth, learned } = sampling;
+    let mut paths = FullPaths { learned, ..FullPaths::default() };
     let mut sums = vec![DVec3::ZERO; wanted.len()];
     let mut nonfinite = 0;
     let mut batch = Batch::default();
     let most = wanted.iter().map(|w| w.samples).max().unwrap_or(0);
     for first in (0..most).step_by(BATCH as usize) {
         let samples = |w: &PixelPaths| first.min(w.samples)..(first + BATCH).min(w.samples);
-        let paths =
+        let starts =
             wanted.iter().flat_map(|w| samples(w).map(|sample| PathStart { pixel: w.pixel, sample, seed }));
-        start(&mut batch, paths, world, view, estimand, most);
-        let mut values = batch.trace(world, max_depth, &mut FullPaths::default(), counts);
+        start(&mut batch, starts, world, view, estimand, most);
+        let mut values = batch.trace(world, max_depth, &mut paths, counts);
         for (w, sum) in wanted.iter().zip(&mut sums) {
             for value in values.by_ref().take(samples(w).len()) {
                 if value.is_finite() {
@@ -80,10 +85,12 @@ pub(super) fn sample_pixels(
     world: &World,
     view: &View,
     max_depth: Option<u32>,
+    known: &LearnedLight,
     groups: &[Vec<[u32; 2]>],
     control: &Control,
 ) -> Option<SampledPixels> {
     let max_depth = world.scene.path_limit(max_depth);
+    let learned = known.light.as_ref();
     let sample = |pixels: &Vec<[u32; 2]>| {
         let mut counts = RayCounts::default();
         let wanted: Vec<PixelPaths> =
@@ -92,7 +99,7 @@ pub(super) fn sample_pixels(
             if control.is_cancelled() {
                 return Vec::new();
             }
-            let sampling = PixelSampling { estimand: Estimand::Pixels, seed, max_depth };
+            let sampling = PixelSampling { estimand: Estimand::Pixels, seed, max_depth, learned };
             let (means, _) = pixel_means(world, view, sampling, &wanted, &mut counts);
             means.into_iter().map(|mean| f64::from(luminance(mean.as_vec3()))).collect()
         });
@@ -100,6 +107,7 @@ pub(super) fn sample_pixels(
     };
     let found: Vec<([Vec<f64>; 2], RayCounts)> = groups.par_iter().one_by_one().map(sample).collect();
     let rays = found.iter().map(|(_, counts)| counts.rays + counts.shadow_rays).sum();
+    let before = known.counts.rays + known.counts.shadow_rays;
     let luminances = [0, 1].map(|set| found.iter().flat_map(|(sets, _)| &sets[set]).copied().collect());
-    (!control.is_cancelled()).then(|| SampledPixels::new(luminances, rays, 0))
+    (!control.is_cancelled()).then(|| SampledPixels::new(luminances, rays, before))
 }

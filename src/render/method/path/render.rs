@@ -17,10 +17,15 @@ use base::parallel::{ShortRuns, Workspaces};
 use base::progress::Control;
 use base::stats::Stage;
 use rayon::prelude::*;
+use std::sync::Arc;
 use transport::eye::{PackedGuide, PackedGuides};
+use transport::learning::LearnedLight;
 use transport::paths::{Batch, Estimand};
 use world::World;
 use world::view::View;
+
+/// Number of surfaces on a path from which light is learned.
+const LEARNING_POINTS: u32 = 3;
 
 method_settings! {
     /// Settings of the method.
@@ -41,8 +46,8 @@ impl Renderer for Settings {
         "Path tracing: unbiased and slow to converge, for references"
     }
 
-    fn render(&self, world: &World, _lights: &LightStore, view: &View, control: &Control) -> Output {
-        self.image(world, None, view, control)
+    fn render(&self, world: &World, lights: &LightStore, view: &View, control: &Control) -> Output {
+        self.image(world, &self.learned(world, lights, view, control), None, view, control)
     }
 
     fn estimand(&self) -> Estimand {
@@ -69,12 +74,13 @@ impl Renderer for Settings {
     fn sample_pixels(
         &self,
         world: &World,
-        _lights: &LightStore,
+        lights: &LightStore,
         view: &View,
         groups: &[Vec<[u32; 2]>],
         control: &Control,
     ) -> Option<SampledPixels> {
-        sample_pixels(world, view, self.max_depth, groups, control)
+        let known = self.learned(world, lights, view, control);
+        sample_pixels(world, view, self.max_depth, &known, groups, control)
     }
 
     fn moves(&self) -> &'static [Move] {
@@ -83,22 +89,50 @@ impl Renderer for Settings {
 }
 
 impl Resumes for Settings {
-    fn render_rest(&self, world: &World, partial: &PartialImage, view: &View, control: &Control) -> Output {
-        self.image(world, Some(partial), view, control)
+    fn render_rest(
+        &self,
+        world: &World,
+        lights: &LightStore,
+        partial: &PartialImage,
+        view: &View,
+        control: &Control,
+    ) -> Output {
+        self.image(world, &self.learned(world, lights, view, control), Some(partial), view, control)
     }
 }
 
 impl Settings {
+    /// Returns what is learned of the light in a view.
+    fn learned(
+        &self,
+        world: &World,
+        lights: &LightStore,
+        view: &View,
+        control: &Control,
+    ) -> Arc<LearnedLight> {
+        lights.learned(world, view, [self.spp, LEARNING_POINTS], control)
+    }
+
     /// Renders the image, from the end of an interrupted one if there is one.
-    fn image(&self, world: &World, partial: Option<&PartialImage>, view: &View, control: &Control) -> Output {
+    fn image(
+        &self,
+        world: &World,
+        known: &LearnedLight,
+        partial: Option<&PartialImage>,
+        view: &View,
+        control: &Control,
+    ) -> Output {
         let mut tally = Tally::default();
+        tally.rays(known.counts.rays);
+        tally.shadow_rays("Rays/shadow", known.counts.shadow_rays);
         let tile = |i| partial.and_then(|p| PathTile::of(p, view, self.spp, i)).unwrap_or_default();
         let mut tiles: Vec<PathTile> = (0..view.window.tile_count(TILE)).map(tile).collect();
         let Settings { estimand, spp, seed, .. } = *self;
         let max_depth = world.scene.path_limit(self.max_depth);
         // Guides of earlier samples are lost, and paths of one edge meet no surface.
         let guides = self.guides && max_depth > 1 && tiles.iter().all(|tile| tile.samples == 0);
-        let inputs = TileInputs { world, view, estimand, spp, seed, max_depth, guides };
+        let inputs =
+            TileInputs { world, view, estimand, spp, seed, max_depth, guides, learned: known.light.as_ref() };
         tally.time(Stage::Render, || render_tiles(&mut tiles, &inputs, control));
 
         for tile in &tiles {
@@ -220,7 +254,7 @@ mod tests {
         let (color, squares, samples) =
             (expected.color.clone(), expected.color.clone(), expected.color.map(|_| 16));
         let partial = PartialImage { color, squares, samples, nonfinite: 0, seconds: 0.0 };
-        let rest = guided.render_rest(&world, &partial, view, control);
+        let rest = guided.render_rest(&world, &LightStore::default(), &partial, view, control);
         assert!(rest.complete && rest.guides.is_empty());
         assert!(render(&Settings { max_depth: Some(1), ..guided }).guides.is_empty());
     }

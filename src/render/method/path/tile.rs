@@ -5,6 +5,7 @@ use base::math::Rgb;
 use transport::eye::{FeatureSettings, FirstSurfaces, FullPaths, Guide};
 use transport::paths::{Batch, Estimand, PathStart, RayCounts, start};
 use world::World;
+use world::light::Learned;
 use world::view::View;
 
 /// Side of a tile in pixels.
@@ -41,6 +42,8 @@ pub struct TileInputs<'a> {
     pub max_depth: u32,
     /// True if a denoiser's guides are wanted.
     pub guides: bool,
+    /// Learned light that guides light samples.
+    pub learned: Option<&'a Learned>,
 }
 
 /// Pixels of a tile and their counts.
@@ -80,7 +83,7 @@ impl PathTile {
 
     /// Takes all samples up to `end` of every pixel of the tile of this index.
     pub fn render(&mut self, inputs: &TileInputs, index: usize, end: u32, batch: &mut Batch) {
-        let TileInputs { world, view, estimand, spp, seed, max_depth, guides } = *inputs;
+        let TileInputs { world, view, estimand, spp, seed, max_depth, guides, learned } = *inputs;
         let begin = self.samples;
         if begin >= end {
             return;
@@ -91,7 +94,7 @@ impl PathTile {
         if self.pixels.is_empty() {
             self.pixels = vec![RunningMean::default(); film_pixels.len()];
         }
-        let mut paths = FullPaths::default();
+        let mut paths = FullPaths { learned, ..FullPaths::default() };
         if guides {
             self.guides.resize(film_pixels.len(), Guide::default());
             paths.first_surfaces = Some(FirstSurfaces::default());

@@ -6,6 +6,7 @@ use super::{Preset, Settings};
 use crate::method::Output;
 use crate::method::lights::LightStore;
 use crate::method::photon_store::FoundCaustics;
+use crate::method::prepared::learned;
 use crate::method::renderer::{FormerFrames, Renderer, Walks};
 use crate::method::sampled_pixels::{PILOT_SPP, SampledPixels};
 use crate::method::sampling::HasSampling;
@@ -107,12 +108,15 @@ impl Renderer for Settings {
         let settings = EyeSettings { spp: PILOT_SPP, seed: 0, ..self.sampling().eye(&world.scene) };
         let FoundCaustics { caustics, rays, shadow_rays, .. } =
             lights.photons.pilot(world, view, settings, control);
-        let sources = LightSources { direct: &direct, caustics: caustics.as_ref() };
+        let known = learned(world, lights, view, self.spp, control);
+        let sources =
+            LightSources { direct: &direct, caustics: caustics.as_ref(), learned: known.light.as_ref() };
         let found = EyePass::pilot(world, view, settings, sources, groups, control);
-        let EyePilot { luminances, photons, sampled, learned } = found;
+        let EyePilot { luminances, photons, sampled, before } = found;
         let luminances = luminances.map(|by_group| by_group.into_iter().flatten().map(f64::from).collect());
-        let [sampled, learned] = [sampled, learned].map(|chains| chains.rays + chains.shadow_rays);
-        let pixels = SampledPixels::new(luminances, sampled, learned + rays + shadow_rays);
+        let before = [before, known.counts].map(|counts| counts.rays + counts.shadow_rays);
+        let sampled = sampled.rays + sampled.shadow_rays;
+        let pixels = SampledPixels::new(luminances, sampled, before.iter().sum::<u64>() + rays + shadow_rays);
         (!control.is_cancelled()).then_some(SampledPixels { photons, ..pixels })
     }
 

@@ -21,10 +21,11 @@ mod table;
 mod tests;
 mod tiles;
 
-pub use learned::{LearnedSky, SkyObservations};
+pub use learned::LearnedSky;
 pub use sample::{EnvironmentSample, EnvironmentSamples16};
 
-use base::math::{LANES, Rgb, Vec2x16, Vec3x16, lanes_in, luminance};
+use super::observed::Observed;
+use base::math::{F32x16, LANES, Rgb, Vec2x16, Vec3x16, lanes_in, luminance};
 use base::sampling::uniform_sphere;
 use discs::Discs;
 use equal_cells::EqualCells;
@@ -66,8 +67,8 @@ struct TileSample {
     density: f32,
 }
 
-/// Learned visibility of the environment, and the sixteen points for which directions are sampled.
-pub type LearnedAt<'a> = Option<(&'a LearnedSky, &'a Vec3x16)>;
+/// Learned distributions over tiles at the sixteen points for which directions are sampled.
+pub type LearnedAt<'a> = Option<[&'a TileTable; LANES]>;
 
 impl EnvironmentLight {
     /// Builds the distributions; `None` if environment and discs are black.
@@ -109,8 +110,8 @@ impl EnvironmentLight {
     }
 
     /// Learns from observations how much light comes from each tile.
-    pub fn learn(&self, observations: &SkyObservations) -> LearnedSky {
-        LearnedSky::new(self.tiles.all(), observations)
+    pub(super) fn learn(&self, observed: &Observed) -> LearnedSky {
+        LearnedSky::new(self.tiles.all(), observed)
     }
 
     /// Returns the mean luminance over the sphere of directions.
@@ -218,7 +219,7 @@ impl EnvironmentLight {
 
     /// Samples one of the directions that were sampled beforehand, in each lane of `wanted`. Densities are those of
     /// continuous directions. A constant sky without discs, of which nothing was learned, has new directions.
-    pub fn sample16(&self, u: &Vec2x16, wanted: u16, learned: LearnedAt) -> EnvironmentSamples16 {
+    pub(super) fn sample16(&self, u: &Vec2x16, wanted: u16, learned: LearnedAt) -> EnvironmentSamples16 {
         let mut samples = EnvironmentSamples16::default();
         if learned.is_none() && self.sample_even(Vec2::ZERO).is_some() {
             for i in lanes_in(wanted) {
@@ -253,6 +254,11 @@ impl EnvironmentLight {
             samples.pdf[i] = if samples.pdf[i] < f32::INFINITY { samples.pdf[i] } else { 0.0 };
         }
         samples
+    }
+
+    /// Chooses sixteen tiles as is learned of one place, by numbers in [0, 1).
+    pub fn tiles_by(&self, learned: &[&TileTable; LANES], u: &F32x16) -> [usize; LANES] {
+        TileTable::sample16(learned, u, u16::MAX).0
     }
 
     /// Returns one of the directions that were sampled beforehand in each of sixteen tiles; `None` in tiles without
@@ -339,7 +345,7 @@ impl EnvironmentLight {
     /// Returns the distribution over tiles for each lane.
     #[inline]
     fn tables<'a>(&'a self, learned: LearnedAt<'a>) -> [&'a TileTable; LANES] {
-        learned.map_or([&self.by_flux; LANES], |(sky, x)| sky.at(x))
+        learned.unwrap_or([&self.by_flux; LANES])
     }
 }
 

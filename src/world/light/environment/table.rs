@@ -8,7 +8,7 @@ const WIDTH: usize = 16;
 
 /// Probabilities of tiles.
 #[derive(Clone, Debug)]
-pub(super) struct TileTable {
+pub struct TileTable {
     /// Sums of the probabilities before each tile, then the total, then infinity, in lines.
     cumulative: Vec<[f32; WIDTH]>,
     /// First sum of each line but the first, then infinity, in lines.
@@ -22,7 +22,7 @@ pub(super) struct TileTable {
 impl TileTable {
     /// Builds a distribution in proportion to `weights`, mixed with a share `by_flux` of the distribution by flux; by
     /// flux alone if no weight is positive.
-    pub fn new(tiles: &[Tile], weights: &[f32], by_flux: f32) -> TileTable {
+    pub(super) fn new(tiles: &[Tile], weights: &[f32], by_flux: f32) -> TileTable {
         let total: f32 = weights.iter().sum();
         let usable = total > 0.0 && total.is_finite();
         let (scale, by_flux) = if usable { ((1.0 - by_flux) / total, by_flux) } else { (0.0, 1.0) };

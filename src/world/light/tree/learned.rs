@@ -1,94 +1,72 @@
-//! Visibility of emitters from each region of the scene, learned from free and occluded rays. In a building with many
-//! rooms most emitters are occluded, and samples of them are wasted.
+//! Visibility of emitters from each region of the scene, as factors on their importance.
 //!
-//! Paper: Vévoda, Kondapaneni & Křivánek, *Bayesian online regression for adaptive direct illumination sampling*, 2018.
-//!
-//! Deviations: the visibility is learned once, before any sample is taken, by rays to emitters that are chosen without
-//! it. For each node of the emitter tree it is the share of free rays, with the parent's share as prior. The importance
-//! of a node is multiplied by the root of the share, which minimises the variance if nodes are wholly visible or wholly
-//! occluded. Estimates are unbiased, because no factor is 0.
+//! For each node of the emitter tree the visibility is the share of free rays, with the parent's share as prior. The
+//! importance of a node is multiplied by the root of the share, which minimises the variance if nodes are wholly
+//! visible or wholly occluded.
 
 use super::EmitterTree;
 use super::node::ARITY;
-use crate::light::regions::Regions;
-use base::math::{LANES, Vec3x16};
-use glam::Vec3;
-use rayon::prelude::*;
-
-/// Maximum number of points in a region, unless there are too many nodes (see [`MAX_FACTORS`]).
-const POINTS: usize = 64;
+use crate::light::observed::{Observed, PRIOR};
+use base::math::LANES;
 
 /// Minimum share of occluded rays for which visibility is used; below it, the lookup costs more than it saves.
 const MIN_OCCLUDED: f32 = 0.25;
 
 /// Approximate maximum number of factors.
-const MAX_FACTORS: usize = 1 << 22;
+pub const MAX_FACTORS: usize = 1 << 22;
 
-/// Weight of a parent's share in its children's shares, in rays.
-const PRIOR: f32 = 1.0;
+/// Weight of the share above a node of the tree in the node's own, in rays.
+const ABOVE: f32 = 1.0;
 
 /// Minimum factor.
 const MIN_FACTOR: f32 = 0.1;
 
-/// Points, and the visibility of emitters from each.
-#[derive(Clone, Debug, Default)]
-pub struct EmitterObservations {
-    /// Positions of the points.
-    pub points: Vec<Vec3>,
-    /// Emitters to which the rays of each point in turn were traced, and true if they are visible; `None` for rays to
-    /// emitters that cannot light the point. Every point has the same number of rays.
-    pub rays: Vec<Option<(u32, bool)>>,
-}
-
 /// Factors on the importance of nodes by region.
 #[derive(Clone, Debug)]
 pub struct LearnedEmitters {
-    regions: Regions,
-    /// Factors by region and node.
-    factors: Vec<f32>,
-    /// Number of slots for nodes.
-    slots: usize,
+    /// Factors of the nodes by region.
+    factors: Vec<Vec<f32>>,
 }
 
 impl LearnedEmitters {
     /// Learns the factors; `None` if nearly all emitters are visible from everywhere.
-    pub(in crate::light) fn new(
-        tree: &EmitterTree,
-        observations: &EmitterObservations,
-    ) -> Option<LearnedEmitters> {
-        let rays = || observations.rays.iter().flatten();
+    pub(in crate::light) fn new(tree: &EmitterTree, observed: &Observed) -> Option<LearnedEmitters> {
+        let rays = || observed.waves.iter().flat_map(|wave| wave.emitters.iter().flatten());
         let occluded = rays().filter(|(_, seen)| !seen).count();
         if (occluded as f32) <= MIN_OCCLUDED * rays().count() as f32 {
             return None;
         }
-        let slots = tree.slots();
-        let most = POINTS.max(observations.points.len().saturating_mul(slots) / MAX_FACTORS);
-        let (regions, members) = Regions::new(&observations.points, most);
-        let each = observations.rays.len() / observations.points.len().max(1);
-        let factors = members.par_iter().flat_map_iter(|members| {
-            let rays = members.iter().flat_map(|point| &observations.rays[*point as usize * each..][..each]);
-            factors(tree, rays.flatten())
-        });
-        Some(LearnedEmitters { factors: factors.collect(), regions, slots })
+        let add = |region: usize, counts: &mut [[f32; 2]]| {
+            for (emitter, seen) in observed.rays(region, |wave| &wave.emitters).flatten() {
+                for slot in tree.slots_above(*emitter as usize) {
+                    counts[slot] = [counts[slot][0] + f32::from(*seen), counts[slot][1] + 1.0];
+                }
+            }
+        };
+        let everywhere = shares(tree, rays());
+        let factor = |share: &mut f32| *share = share.sqrt().max(MIN_FACTOR);
+        let mut factors = observed.regions.means(add, PRIOR, &everywhere);
+        factors.iter_mut().flatten().for_each(factor);
+        Some(LearnedEmitters { factors })
     }
 
-    /// Returns the factors at sixteen points, by node.
+    /// Returns the factors in sixteen regions, by node.
     #[inline]
-    pub(in crate::light) fn at(&self, x: &Vec3x16) -> [&[f32]; LANES] {
-        self.regions.find(x).map(|region| &self.factors[region * self.slots..][..self.slots])
+    pub(in crate::light) fn at(&self, regions: &[usize; LANES]) -> [&[f32]; LANES] {
+        regions.map(|region| &self.factors[region][..])
     }
 }
 
-/// Computes the factors of a region from its rays.
-fn factors<'a>(tree: &EmitterTree, rays: impl Iterator<Item = &'a (u32, bool)>) -> Vec<f32> {
+/// Returns the shares of free rays among all rays to emitters.
+fn shares<'a>(tree: &EmitterTree, rays: impl Iterator<Item = &'a (u32, bool)>) -> Vec<f32> {
     let mut counts = vec![[0.0f32; 2]; tree.slots()];
-    let mut all = [PRIOR; 2];
+    let mut all = [ABOVE; 2];
     for (emitter, seen) in rays {
         let add = |[free, rays]: &mut [f32; 2]| (*free, *rays) = (*free + f32::from(*seen), *rays + 1.0);
         add(&mut all);
         tree.slots_above(*emitter as usize).for_each(|slot| add(&mut counts[slot]));
     }
-    let share = |[free, rays]: [f32; 2], parent: f32| (free + PRIOR * parent) / (rays + PRIOR);
+    let share = |[free, rays]: [f32; 2], parent: f32| (free + ABOVE * parent) / (rays + ABOVE);
     let mut shares = vec![all[0] / all[1]; counts.len()];
     for (slot, counts) in counts.iter().enumerate() {
         // A branch comes after the node whose child it is.
@@ -98,5 +76,5 @@ fn factors<'a>(tree: &EmitterTree, rays: impl Iterator<Item = &'a (u32, bool)>) 
         };
         shares[slot] = share(*counts, parent);
     }
-    shares.into_iter().map(|share| share.sqrt().max(MIN_FACTOR)).collect()
+    shares
 }

@@ -21,7 +21,7 @@ use base::math::{F32x16, LANES, Vec3x16};
 pub use bounds::EmitterBounds;
 use branch::Branch;
 use build::{BinaryNode, Content, build};
-pub use learned::{EmitterObservations, LearnedEmitters};
+pub use learned::{LearnedEmitters, MAX_FACTORS};
 pub(super) use node::PointAndNormal;
 use node::{ARITY, EmitterNode, TreeChild};
 
@@ -166,7 +166,7 @@ impl EmitterTree {
 /// Numbering of the nodes: nodes of the cut, then the children of each branch.
 impl EmitterTree {
     /// Returns the number of slots for nodes; every branch has as many as it may have children.
-    fn slots(&self) -> usize {
+    pub fn slots(&self) -> usize {
         self.slot(self.branches.len(), 0)
     }
 
