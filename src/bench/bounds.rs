@@ -3,7 +3,7 @@
 use super::lit_scene::{Dice, LitScene, packet};
 use super::measure::{Case, Clock, Experiment};
 use super::{Benchmark, Context, Kind, Table};
-use base::math::luminance;
+use base::math::LANES;
 use std::cmp::Reverse;
 use std::hint::black_box;
 use transport::lightcut::ReceiverPacket;
@@ -30,36 +30,29 @@ fn run(context: &Context) -> Vec<Table> {
     let inner: Vec<&LightNode> = lit.trees.nodes.iter().filter(|n| !n.is_leaf()).collect();
     let nodes: Vec<&LightNode> =
         (0..CLUSTERS).filter_map(|_| inner.get(dice.below(inner.len())).copied()).collect();
+    let (widths, packets) = ([1, LANES], |width| groups.iter().flat_map(move |g| g.chunks(width)));
     let units = (groups.iter().map(Vec::len).sum::<usize>() * nodes.len()) as f64;
-    let irradiance: Vec<ReceiverPacket> =
-        groups.iter().map(|g| packet(g.iter().map(|&i| lit.irradiance(i)))).collect();
-    let surfaces: Vec<ReceiverPacket> =
-        groups.iter().map(|g| packet(g.iter().map(|&i| lit.surface(i)))).collect();
+    let irradiance: [Vec<ReceiverPacket>; 2] =
+        widths.map(|width| packets(width).map(|g| packet(g.iter().map(|&i| lit.irradiance(i)))).collect());
+    let surfaces: [Vec<ReceiverPacket>; 2] =
+        widths.map(|width| packets(width).map(|g| packet(g.iter().map(|&i| lit.surface(i)))).collect());
     let (transfer, vpls) = (&lit.transfer(), &lit.trees.vpls);
     let light = |node: &LightNode| &vpls[node.representative()];
-    let bound_alone = |points: &ReceiverPacket, node: &LightNode| {
-        for lane in 0..points.len() {
-            let bound = transfer.bound(points.get(lane), node);
-            black_box(luminance(bound.most * node.intensity) * bound.share);
-        }
-    };
-    let bound_together = |points: &ReceiverPacket, node: &LightNode| {
+    let bound = |points: &ReceiverPacket, node: &LightNode| {
         black_box(transfer.errors16(points, node));
     };
     let light_alone = |points: &ReceiverPacket, node: &LightNode| {
-        for lane in 0..points.len() {
-            black_box(transfer.unshadowed(points.get(lane), light(node), node.kind()));
-        }
+        black_box(transfer.unshadowed(points.get(0), light(node), node.kind()));
     };
     let light_together = |points: &ReceiverPacket, node: &LightNode| {
         black_box(transfer.unshadowed16(points, light(node), node.kind()));
     };
     let mut cases = Vec::new();
-    for (name, all) in [("collectors (Lambert)", &irradiance), ("the scene's materials", &surfaces)] {
+    for (name, [ones, all]) in [("collectors (Lambert)", &irradiance), ("the scene's materials", &surfaces)] {
         let at = cases.len();
-        cases.push(Case::new(&["bound", name, "alone"], at, units, each(all, &nodes, bound_alone)));
-        cases.push(Case::new(&["bound", name, "sixteen"], at, units, each(all, &nodes, bound_together)));
-        cases.push(Case::new(&["light", name, "alone"], at + 2, units, each(all, &nodes, light_alone)));
+        cases.push(Case::new(&["bound", name, "alone"], at, units, each(ones, &nodes, bound)));
+        cases.push(Case::new(&["bound", name, "sixteen"], at, units, each(all, &nodes, bound)));
+        cases.push(Case::new(&["light", name, "alone"], at + 2, units, each(ones, &nodes, light_alone)));
         cases.push(Case::new(&["light", name, "sixteen"], at + 2, units, each(all, &nodes, light_together)));
     }
     let experiment = Experiment {

@@ -91,7 +91,7 @@ impl<'w> LitScene<'w> {
 }
 
 /// Returns receivers in lanes.
-pub(super) fn packet<'m>(receivers: impl Iterator<Item = Receiver<'m>>) -> ReceiverPacket<'m> {
+pub(super) fn packet<'m>(receivers: impl IntoIterator<Item = Receiver<'m>>) -> ReceiverPacket<'m> {
     let mut packet = ReceiverPacket::new();
     packet.set(receivers);
     packet

@@ -1,12 +1,13 @@
 //! Light trees: time to build and size of the cuts through them, for both families of builders.
 
-use super::lit_scene::LitScene;
+use super::lit_scene::{LitScene, packet};
 use super::measure::{Case, Clock, Experiment};
 use super::{Benchmark, Context, Kind, Table};
 use base::progress::Control;
 use std::hint::black_box;
 use transport::lightcut::{CutSettings, Lightcut, Transfer};
 use transport::lights::{Family, LightPass, LightPassSettings, LightTrees, light_pass};
+use world::shadow::Engine;
 
 pub(super) const BENCHMARK: Benchmark = Benchmark {
     name: "trees",
@@ -59,9 +60,9 @@ fn run(context: &Context) -> Vec<Table> {
 fn mean_cut(lit: &LitScene, trees: &LightTrees, epsilon: f32) -> f64 {
     let settings = CutSettings { epsilon, max_cut: usize::MAX, ..CutSettings::default() };
     let transfer = Transfer::new(trees, lit.world.diagonal);
-    let mut cut = Lightcut::new();
+    let (mut cut, engine) = (Lightcut::new(), Engine::new(lit.world));
     for sample in (0..lit.samples.len()).step_by(lit.samples.len().div_ceil(CUTS).max(1)) {
-        cut.gather(&transfer, lit.world, &lit.surface(sample), &settings);
+        cut.gather(&transfer, &engine, &packet([lit.surface(sample)]), &settings);
     }
     cut.counts.clusters as f64 / cut.counts.cuts.max(1) as f64
 }

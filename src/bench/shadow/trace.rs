@@ -3,13 +3,9 @@
 use crate::lit_scene::LitScene;
 use base::math::{LANES, lanes_in};
 use embree::{Ray, Rays16};
-use glam::Vec3;
 use std::cell::RefCell;
-use transport::lightcut::{
-    CutSettings, Lightcut, MIN_SHARED, PacketLightcut, PacketVisibility, Receiver, ReceiverPacket,
-    Visibility, to_vpl,
-};
-use transport::lights::{LightNode, Origin, Vpl};
+use transport::lightcut::{CutSettings, Lightcut, Receiver, ReceiverPacket, Visibility};
+use transport::lights::Origin;
 use transport::radiance_cache::{CLAMP, CacheSettings, MAX_CUT};
 
 /// Points that cuts light.
@@ -89,7 +85,7 @@ fn stretches(lit: &LitScene, order: Order) -> Vec<Vec<usize>> {
 /// Records the rays of the cuts at some points.
 fn chunk<'w>(lit: &LitScene<'w>, order: Order, points: &[usize], shared: bool) -> Vec<SegmentPacket> {
     let recorder = Recorder { lit, packer: RefCell::default() };
-    let (transfer, mut single, mut group) = (lit.transfer(), Lightcut::new(), PacketLightcut::new());
+    let (transfer, mut lightcut) = (lit.transfer(), Lightcut::new());
     let (surface, irradiance) = (|point| lit.surface(point), |point| lit.irradiance(point));
     let (groups, cut, receiver): (_, _, &dyn Fn(usize) -> Receiver<'w>) = match order {
         Order::Pixels => (lit.groups(points), CutSettings::default(), &surface),
@@ -101,13 +97,9 @@ fn chunk<'w>(lit: &LitScene<'w>, order: Order, points: &[usize], shared: bool) -
     };
     let mut packet = ReceiverPacket::new();
     for members in groups {
-        if shared && members.len() >= MIN_SHARED {
-            packet.set(members.iter().map(|&point| receiver(point)));
-            group.gather(&transfer, &recorder, &packet, &cut);
-        } else {
-            for point in members {
-                single.gather(&transfer, &recorder, &receiver(point), &cut);
-            }
+        for points in members.chunks(if shared { LANES } else { 1 }) {
+            packet.set(points.iter().map(|&point| receiver(point)));
+            lightcut.gather(&transfer, &recorder, &packet, &cut);
         }
     }
     let mut packer = recorder.packer.into_inner();
@@ -147,21 +139,17 @@ struct Recorder<'a> {
 }
 
 impl Visibility for Recorder<'_> {
-    fn visible(&self, x: Vec3, normal: Vec3, vpl: &Vpl, node: &LightNode) -> bool {
-        let ray = to_vpl(x, normal, vpl, node.kind());
-        self.packer.borrow_mut().push(&ray, node.representative() as u32);
-        !self.lit.world.accel.occluded(&ray)
-    }
-}
-
-impl PacketVisibility for Recorder<'_> {
-    fn visible16(&self, points: &ReceiverPacket, lanes: u16, vpl: &Vpl, node: &LightNode) -> u16 {
-        let rays = points.shadow_rays(vpl, node.kind());
-        let seen = lanes & !self.lit.world.accel.occluded16(&rays, lanes, true);
-        let keys = [node.representative() as u32; LANES];
+    fn visible16(&self, rays: &Rays16, lanes: u16, light: Option<u32>) -> u16 {
+        let (accel, key) = (&self.lit.world.accel, light.unwrap_or(0));
         let mut packer = self.packer.borrow_mut();
+        if lanes.is_power_of_two() {
+            let ray = rays.get(lanes.trailing_zeros() as usize);
+            packer.push(&ray, key);
+            return if accel.occluded(&ray) { 0 } else { lanes };
+        }
         packer.flush();
-        packer.packets.push(SegmentPacket { neighbours: true, rays, valid: lanes, keys });
-        seen
+        let packet = SegmentPacket { neighbours: true, rays: rays.clone(), valid: lanes, keys: [key; LANES] };
+        packer.packets.push(packet);
+        lanes & !accel.occluded16(rays, lanes, true)
     }
 }

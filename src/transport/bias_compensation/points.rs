@@ -10,7 +10,7 @@ use super::near_surface::{Limit, NearSurface};
 use super::short_rays::{self, ClampedPoint};
 use super::{Compensation, choose_evenly, lobes};
 use crate::lightcut::{
-    CutCounts, CutSettings, PacketCut, PacketLightcut, PacketSum, Receiver, ReceiverPacket, SampledCut,
+    CutCounts, CutSettings, Lightcut, PacketCut, PacketSum, Receiver, ReceiverPacket, SampledCut,
     SampledSettings, Samples, frozen_luminance,
 };
 use crate::lights::Origin;
@@ -18,6 +18,7 @@ use base::math::{Frame, LANES, Rgb, luminance};
 use base::stats::add_fields;
 use std::f32::consts::PI;
 use world::SurfacePoint;
+use world::shadow::Engine;
 
 /// Number of rays per point.
 const RAYS: u32 = 16;
@@ -51,7 +52,7 @@ const ASIDE: f32 = 1e-3;
 pub struct Compensator {
     /// Surfaces met, with the lanes of their rays.
     met: Vec<(usize, NearSurface)>,
-    packet: PacketLightcut,
+    packet: Lightcut,
     sampled: SampledCut,
     receivers: ReceiverPacket<'static>,
     counts: CompensationCounts,
@@ -183,7 +184,7 @@ impl Compensator {
         let seed = seed.filter(|_| of_places.iter().all(|(near, _)| !near.lack.by_lobes));
         let samples = seed.and_then(|seed| {
             let settings = SampledSettings { cut: &settings, samples: &SAMPLES, seed };
-            self.sampled.gather(&c.transfer, c.world, &self.receivers, &settings)
+            self.sampled.gather(&c.transfer, &Engine::new(c.world), &self.receivers, &settings)
         });
         if let Some(sum) = samples {
             for ((_, irradiance), found) in places.iter_mut().zip(sum.radiance) {
@@ -191,7 +192,7 @@ impl Compensator {
             }
             return places;
         }
-        let cut = self.packet.gather(&c.transfer, c.world, &self.receivers, &settings);
+        let cut = self.packet.gather(&c.transfer, &Engine::new(c.world), &self.receivers, &settings);
         for (lane, ((_, irradiance), (near, _))) in places.iter_mut().zip(&of_places).enumerate() {
             let gathered = limited(c, &cut, near, lane, baseline);
             *irradiance = if gathered.is_finite() { gathered } else { Rgb::ZERO };

@@ -4,9 +4,6 @@ use base::math::LANES;
 use glam::Vec3;
 use rayon::prelude::*;
 
-/// Minimum number of points that share a cut.
-pub const MIN_SHARED: usize = 4;
-
 /// Weight of the difference of unit normals in [`group_compact`], relative to that of positions over the scene's
 /// diagonal.
 const NORMAL_WEIGHT: f32 = 0.01;

@@ -1,10 +1,8 @@
 //! Random points, materials and virtual lights for tests of cuts.
 
-use super::{CutSettings, PacketVisibility, RayVisibility, Receiver, ReceiverPacket, Visibility};
-use crate::lights::{
-    Family, LightNode, LightTrees, LobeProfile, Origin, Profiles, SpotProfile, Vpl, VplKind, VplSet,
-};
-use base::math::{Frame, LANES, Rgb, Vec3x16, lanes_in};
+use super::{CutSettings, Receiver, ReceiverPacket, Visibility};
+use crate::lights::{Family, LightTrees, LobeProfile, Origin, Profiles, SpotProfile, Vpl, VplKind, VplSet};
+use base::math::{Frame, Rgb, lanes_in};
 use base::progress::Control;
 use base::sampling::{hash, uniform_sphere};
 use embree::Rays16;
@@ -142,31 +140,13 @@ pub struct Ball {
 }
 
 impl Visibility for Ball {
-    fn visible(&self, x: Vec3, _: Vec3, vpl: &Vpl, node: &LightNode) -> bool {
-        let (direction, t_max) = match node.kind() {
-            VplKind::Directional => (vpl.position, f32::INFINITY),
-            _ => ((vpl.position - x).normalize_or_zero(), (vpl.position - x).length()),
-        };
-        let t = (self.centre - x).dot(direction).clamp(0.0, t_max);
-        (x + direction * t - self.centre).length() > self.radius
-    }
-}
-
-impl PacketVisibility for Ball {
-    fn visible16(&self, receivers: &ReceiverPacket, lanes: u16, vpl: &Vpl, node: &LightNode) -> u16 {
-        let sees = |&lane: &usize| self.visible(receivers.get(lane).position(), Vec3::ZERO, vpl, node);
-        lanes_in(lanes).filter(sees).fold(0, |mask, lane| mask | 1 << lane)
-    }
-}
-
-impl RayVisibility for Ball {
-    fn arriving16(&self, rays: &Rays16, count: usize, _: &[Option<u32>; LANES], _: &mut Vec3x16) -> u16 {
+    fn visible16(&self, rays: &Rays16, lanes: u16, _: Option<u32>) -> u16 {
         let is_free = |&lane: &usize| {
             let ray = rays.get(lane);
             let along = (self.centre - ray.origin).dot(ray.direction) / ray.direction.length_squared();
             (ray.origin + ray.direction * along.clamp(0.0, ray.t_far) - self.centre).length() > self.radius
         };
-        (0..count).filter(is_free).fold(0, |mask, lane| mask | 1 << lane)
+        lanes_in(lanes).filter(is_free).fold(0, |mask, lane| mask | 1 << lane)
     }
 }
 
@@ -217,14 +197,14 @@ pub struct Unoccluded;
 
 impl Visibility for Unoccluded {
     #[inline]
-    fn visible(&self, _: Vec3, _: Vec3, _: &Vpl, _: &LightNode) -> bool {
-        true
+    fn visible16(&self, _: &Rays16, lanes: u16, _: Option<u32>) -> u16 {
+        lanes
     }
 }
 
-impl PacketVisibility for Unoccluded {
-    #[inline]
-    fn visible16(&self, _: &ReceiverPacket, lanes: u16, _: &Vpl, _: &LightNode) -> u16 {
-        lanes
-    }
+/// Returns a packet of one point.
+pub fn alone<'m>(receiver: Receiver<'m>) -> ReceiverPacket<'m> {
+    let mut packet = ReceiverPacket::new();
+    packet.set([receiver]);
+    packet
 }

@@ -4,45 +4,42 @@
 //! Paper: Walter et al., *Lightcuts: A Scalable Approach to Illumination*, 2005.
 //!
 //! A [`Receiver`] defines the quantity that is gathered (reflected radiance or irradiance), [`Transfer`] the
-//! contribution of one VPL, and [`expected`] the expected error of a cluster. Four workspaces gather the light of all
+//! contribution of one VPL, and [`expected`] the expected error of a cluster. Three workspaces gather the light of all
 //! VPLs:
 //!
-//! - [`Lightcut`] at a single point ([`single`]);
-//! - [`PacketLightcut`] at up to sixteen neighbours, which share a cut ([`packet`]);
+//! - [`Lightcut`] at a point, or at up to sixteen neighbours, which share a cut ([`packet`]);
 //! - [`ReconstructionCut`] at points between such neighbours ([`reconstruction`]);
 //! - [`SampledCut`] at up to sixteen points, by samples of a coarse cut.
 //!
 //! `gather_all` is the exact sum that they approximate.
 
 mod clamp;
-mod cluster_box;
 mod coherence;
+#[cfg(test)]
+mod exhaustive;
 pub mod expected;
 #[cfg(test)]
 pub(crate) mod fixtures;
 pub mod packet;
 mod receiver;
 pub mod reconstruction;
-mod refinement;
 mod settings;
 mod shadow_rays;
-pub mod single;
 #[cfg(test)]
 mod tests;
 mod transfer;
 mod visibility;
 
 pub use clamp::{frozen_luminance, is_weak};
-pub use coherence::{CoherenceLimit, MIN_SHARED, OrientedPoint, group_coherent, group_compact};
+pub use coherence::{CoherenceLimit, OrientedPoint, group_coherent, group_compact};
+#[cfg(test)]
+pub use exhaustive::gather_all;
 pub use packet::{
-    PacketCluster, PacketCut, PacketLightcut, PacketSum, ReceiverPacket, SampledCut, SampledSettings, Samples,
+    Lightcut, PacketCluster, PacketCut, PacketSum, ReceiverPacket, SampledCut, SampledSettings, Samples,
 };
 pub use receiver::Receiver;
 pub use reconstruction::ReconstructionCut;
 pub use settings::{CutCounts, CutSettings};
 pub use shadow_rays::{to_vpl, to_vpl16};
-pub use single::Lightcut;
-#[cfg(test)]
-pub use single::gather_all;
 pub use transfer::Transfer;
-pub use visibility::{PacketVisibility, RayVisibility, Visibility};
+pub use visibility::Visibility;

@@ -1,12 +1,14 @@
 //! Cuts in whole scenes against closed forms and the full sum.
 
-use super::{CutSettings, Lightcut, PacketLightcut, Receiver, ReceiverPacket, Transfer, gather_all};
+use super::fixtures::alone;
+use super::{CutSettings, Lightcut, Receiver, ReceiverPacket, Transfer, gather_all};
 use crate::lights::{Family, LightPassSettings, LightTrees, light_pass};
 use base::math::{Frame, Rgb, luminance};
 use base::progress::Control;
 use glam::{Vec2, Vec3};
 use readers::{LoadOptions, Loaded, load};
 use std::f32::consts::PI;
+use world::shadow::Engine;
 use world::testkit::*;
 use world::view::View;
 
@@ -27,11 +29,12 @@ fn vpls_of_a_furnace_give_the_irradiance_of_the_geometric_series() {
     for normal in [Vec3::Y, -Vec3::X, Vec3::new(1.0, 1.0, 1.0).normalize()] {
         let receiver =
             Receiver::irradiance(Vec3::new(0.1, -0.2, 0.15), Vec3::ZERO, &Frame::from_normal(normal));
-        let all = gather_all(&transfer, &*world, &receiver);
+        let all = gather_all(&transfer, &Engine::new(&world), &receiver);
         let error = (all / expected - Rgb::ONE).abs().max_element();
         assert!(error < 0.02, "all VPLs: {all} against {expected}");
         let cut = CutSettings { clamp: None, ..CutSettings::default() };
-        let approximate = Lightcut::new().gather(&transfer, &*world, &receiver, &cut).radiance;
+        let approximate =
+            Lightcut::new().gather(&transfer, &Engine::new(&world), &alone(receiver), &cut).sum.radiance[0];
         let error = (luminance(approximate) / luminance(expected) - 1.0).abs();
         assert!(error < 0.06, "cut: {approximate} against {expected}");
     }
@@ -55,9 +58,12 @@ fn cuts_in_a_scene_with_shadows_are_within_their_error() {
                 let Some(s) = world.intersect(&ray) else { panic!("the room is closed") };
                 let out = -ray.direction;
                 let receiver = Receiver::new(s.position, s.normal, &s.frame, world.bsdf(&s), out);
-                let exact = luminance(gather_all(&transfer, &*world, &receiver));
+                let exact = luminance(gather_all(&transfer, &Engine::new(&world), &receiver));
                 if exact > 0.0 {
-                    let estimate = luminance(cut.gather(&transfer, &*world, &receiver, &settings).radiance);
+                    let estimate = luminance(
+                        cut.gather(&transfer, &Engine::new(&world), &alone(receiver), &settings).sum.radiance
+                            [0],
+                    );
                     squares += (estimate / exact - 1.0).powi(2);
                     n += 1;
                 }
@@ -80,7 +86,7 @@ fn errors_in(scene: &str, family: Family) -> (Vec<f32>, Vec<f32>) {
         load(path.as_ref(), &LoadOptions::default()).expect("the scene loads");
     let world = world(SceneAndView { scene, view: View::whole(cameras.still, [256, 256]) });
     let settings = CutSettings { clamp: None, max_cut: usize::MAX, ..CutSettings::default() };
-    let (mut single, mut shared) = (Lightcut::new(), PacketLightcut::new());
+    let (mut single, mut shared) = (Lightcut::new(), Lightcut::new());
     let mut points = ReceiverPacket::new();
     let (mut single_errors, mut shared_errors) = (Vec::new(), Vec::new());
     for seed in 0..8 {
@@ -100,12 +106,13 @@ fn errors_in(scene: &str, family: Family) -> (Vec<f32>, Vec<f32>) {
                 smooth.then(|| Receiver::new(s.position, s.normal, &s.frame, bsdf, -ray.direction))
             });
             points.set(eye);
-            let radiance = shared.gather(&transfer, &*world, &points, &settings).sum.radiance;
+            let radiance = shared.gather(&transfer, &Engine::new(&world), &points, &settings).sum.radiance;
             for (lane, radiance) in radiance.iter().enumerate().take(points.len()).step_by(9) {
-                let exact = luminance(gather_all(&transfer, &*world, points.get(lane)));
+                let exact = luminance(gather_all(&transfer, &Engine::new(&world), points.get(lane)));
                 if exact > 0.0 {
-                    let alone = single.gather(&transfer, &*world, points.get(lane), &settings).radiance;
-                    single_errors.push(luminance(alone) / exact - 1.0);
+                    let point = alone(*points.get(lane));
+                    let one = single.gather(&transfer, &Engine::new(&world), &point, &settings).sum.radiance;
+                    single_errors.push(luminance(one[0]) / exact - 1.0);
                     shared_errors.push(luminance(*radiance) / exact - 1.0);
                 }
             }

@@ -12,10 +12,11 @@ use super::source::LightcutSource;
 use crate::bias_compensation::near_surface::{Limit, NearSurface};
 use crate::bias_compensation::short_rays::{self, ClampedPoint};
 use crate::bias_compensation::{Compensation, choose_evenly, lobes};
-use crate::lightcut::{CutSettings, OrientedPoint, PacketLightcut, Receiver, ReceiverPacket, group_compact};
+use crate::lightcut::{CutSettings, Lightcut, OrientedPoint, Receiver, ReceiverPacket, group_compact};
 use crate::lights::DirectIndirect;
 use base::math::{Frame, LANES, Rgb, luminance};
 use std::f32::consts::{FRAC_1_PI, PI};
+use world::shadow::Engine;
 
 /// Number of short rays per record.
 const RAYS: u32 = 32;
@@ -45,7 +46,7 @@ struct Lookup {
 /// Buffers of a thread for the lookups' cuts.
 pub struct Cutter<'a> {
     /// Cut.
-    pub cut: &'a mut PacketLightcut,
+    pub cut: &'a mut Lightcut,
     /// Points that the cut lights.
     pub points: &'a mut ReceiverPacket<'static>,
 }
@@ -136,7 +137,7 @@ impl Cutter<'_> {
                 .with_edges(task[lookup.record].edges.saturating_sub(1))
         }));
         let (transfer, world) = (&source.context.transfer, source.context.world);
-        let cut = self.cut.gather(transfer, world, self.points, &settings);
+        let cut = self.cut.gather(transfer, &Engine::new(world), self.points, &settings);
         let mut irradiance = cut.sum.radiance;
         for (lane, lookup) in group.iter().enumerate() {
             let Some(factors) = lobes::factors(c, &lookup.near, &cut) else { continue };

@@ -24,7 +24,7 @@ use super::settings::{CacheSettings, Footprints};
 use super::source::{LightcutSource, RecordSource};
 use crate::eye::edge_class;
 use crate::hsh::Radiance;
-use crate::lightcut::{CutCounts, CutSettings, OrientedPoint, PacketLightcut, ReceiverPacket, group_compact};
+use crate::lightcut::{CutCounts, CutSettings, Lightcut, OrientedPoint, ReceiverPacket, group_compact};
 use crate::lights::{DirectIndirect, Origin};
 use base::math::{LUMINANCE, luminance};
 use base::parallel::{ShortRuns, Workspaces};
@@ -130,7 +130,7 @@ impl LightcutSource<'_> {
 /// Buffers of a thread.
 struct RecordWorkspace<'w> {
     shadows: Engine<'w>,
-    cut: PacketLightcut,
+    cut: Lightcut,
     points: ReceiverPacket<'static>,
     series: SeriesGatherer,
     /// Light of each cluster of the cut.
@@ -141,7 +141,7 @@ impl<'w> RecordWorkspace<'w> {
     fn new(s: &LightcutSource<'w>) -> RecordWorkspace<'w> {
         RecordWorkspace {
             shadows: Engine::scattered(s.context.world),
-            cut: PacketLightcut::new(),
+            cut: Lightcut::new(),
             points: ReceiverPacket::new(),
             series: SeriesGatherer::default(),
             arriving: Vec::new(),

@@ -4,10 +4,10 @@
 //!
 //! Deviations: the occluder is the one that stopped the shadow ray, not the nearest.
 
-use crate::lightcut::{PacketVisibility, ReceiverPacket};
-use crate::lights::{LightNode, LightTrees, Vpl};
-use base::math::{F32x16, LANES, Vec3x16};
-use embree::Occluders16;
+use crate::lightcut::Visibility;
+use crate::lights::LightNode;
+use base::math::{F32x16, LANES};
+use embree::{Occluders16, Rays16};
 use glam::Vec3;
 use std::cell::RefCell;
 use world::World;
@@ -45,12 +45,11 @@ impl OccluderDistances {
     }
 }
 
-impl PacketVisibility for OccluderLog<'_> {
-    fn visible16(&self, points: &ReceiverPacket, lanes: u16, vpl: &Vpl, node: &LightNode) -> u16 {
-        let (rays, key) = (points.shadow_rays(vpl, node.kind()), node.representative() as u32);
+impl Visibility for OccluderLog<'_> {
+    fn visible16(&self, rays: &Rays16, lanes: u16, light: Option<u32>) -> u16 {
         let mut found = Occluders16::default();
-        let occluded = self.engine.occluders16(&rays, lanes, &mut found);
-        if occluded != 0 {
+        let occluded = self.engine.occluders16(rays, lanes, &mut found);
+        if let Some(light) = light.filter(|_| occluded != 0) {
             let mut distances = [f32::INFINITY; LANES];
             for (lane, distance) in distances.iter_mut().enumerate() {
                 let direction =
@@ -59,19 +58,12 @@ impl PacketVisibility for OccluderLog<'_> {
                     *distance = found.t[lane] * direction.length();
                 }
             }
-            self.log.borrow_mut().push((key, distances));
+            self.log.borrow_mut().push((light, distances));
         }
         lanes & !occluded
     }
 
-    fn attenuate16(
-        &self,
-        points: &ReceiverPacket,
-        lanes: u16,
-        trees: &LightTrees,
-        node: &LightNode,
-        light: &mut Vec3x16,
-    ) {
-        self.engine.attenuate16(points, lanes, trees, node, light)
+    fn sheets(&self) -> Option<&World> {
+        self.engine.sheets()
     }
 }

@@ -13,6 +13,7 @@ use base::math::{Frame, luminance};
 use base::progress::Control;
 use glam::Vec3;
 use world::SurfacePoint;
+use world::shadow::Engine;
 use world::testkit::*;
 
 /// Distance of extrapolation; the room is 2 wide.
@@ -88,7 +89,7 @@ fn extrapolate(world: &WorldAndView, footprints: Footprints, probe_rays: u32) ->
 
     let irradiance = |position: Vec3| {
         let receiver = Receiver::irradiance(position, Vec3::Y, &Frame::from_normal(Vec3::Y));
-        luminance(gather_all(&transfer, &world.world, &receiver))
+        luminance(gather_all(&transfer, &Engine::new(world), &receiver))
     };
     let (mut error, mut agreement, mut square, mut count) = (0.0, 0.0, 0.0, 0.0);
     for new in found {

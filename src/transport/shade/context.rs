@@ -2,7 +2,7 @@
 
 use crate::bias_compensation::Compensation;
 use crate::eye::ShadingPoints;
-use crate::lightcut::{CutSettings, MIN_SHARED, Receiver, Samples, Transfer};
+use crate::lightcut::{CutSettings, Receiver, Samples, Transfer};
 use crate::lights::{Lights, Origin};
 use base::math::Frame;
 use world::World;
@@ -41,13 +41,6 @@ pub struct ShadeSettings<'a> {
     pub patches: u32,
     /// Settings of shadow rays, with those of the occluder cache.
     pub shadows: &'a ShadowSettings,
-}
-
-impl ShadeSettings<'_> {
-    /// True if a group of `points` points shares a cut.
-    pub fn shares(&self, points: usize) -> bool {
-        self.share && points >= MIN_SHARED
-    }
 }
 
 /// Light to gather at a shading point.

@@ -9,8 +9,8 @@ use super::{ShadeSettings, ShadingContext, ShadingTask};
 use crate::bias_compensation::points::{CompensationCounts, Compensator};
 use crate::eye::ShadingPoints;
 use crate::lightcut::{
-    CutCounts, CutSettings, Lightcut, PacketLightcut, PacketSum, PacketVisibility, RayVisibility,
-    ReceiverPacket, ReconstructionCut, SampledCut, SampledSettings, Samples, Visibility,
+    CutCounts, CutSettings, Lightcut, PacketSum, ReceiverPacket, ReconstructionCut, SampledCut,
+    SampledSettings, Samples, Visibility,
 };
 use crate::lights::Origin;
 use base::math::{LANES, Rgb};
@@ -35,8 +35,7 @@ pub struct Shaded {
 /// Workspaces for cuts. Each thread has one, so that buffers are allocated once.
 #[derive(Default)]
 pub struct Gatherers<'w> {
-    single: Lightcut,
-    packet: PacketLightcut,
+    packet: Lightcut,
     reconstruction: ReconstructionCut,
     sampled: SampledCut,
     compensator: Compensator,
@@ -45,7 +44,7 @@ pub struct Gatherers<'w> {
 
 impl<'w> Gatherers<'w> {
     /// Shades a patch of tasks that differ only in their points; calls `shaded` with each task.
-    pub fn shade<V: Visibility + PacketVisibility + RayVisibility>(
+    pub fn shade<V: Visibility>(
         &mut self,
         c: &ShadingContext,
         rays: &V,
@@ -62,7 +61,7 @@ impl<'w> Gatherers<'w> {
         {
             return;
         }
-        if settings.shares(patch.len()) {
+        if settings.share {
             self.together(c, rays, points, patch, &cut, &mut shaded);
         } else {
             for tasks in patch.chunks(LANES) {
@@ -73,15 +72,14 @@ impl<'w> Gatherers<'w> {
 
     /// Returns the work of cuts and of compensation since the last call.
     pub fn take_counts(&mut self) -> (CutCounts, CompensationCounts) {
-        let mut cuts = take(&mut self.single.counts);
-        cuts += take(&mut self.packet.counts);
+        let mut cuts = take(&mut self.packet.counts);
         cuts += take(&mut self.reconstruction.counts);
         cuts += take(&mut self.sampled.counts);
         (cuts, self.compensator.take_counts())
     }
 
     /// Shades up to sixteen points by samples of a cut; returns false if a cut takes less time.
-    fn by_samples<V: RayVisibility>(
+    fn by_samples<V: Visibility>(
         &mut self,
         c: &ShadingContext,
         rays: &V,
@@ -102,7 +100,7 @@ impl<'w> Gatherers<'w> {
     }
 
     /// Shades a patch by the cut of its anchors.
-    fn together<V: PacketVisibility>(
+    fn together<V: Visibility>(
         &mut self,
         c: &ShadingContext,
         rays: &V,
@@ -156,8 +154,9 @@ impl<'w> Gatherers<'w> {
     ) {
         let (mut sum, mut clusters) = (PacketSum::default(), [0; LANES]);
         for (lane, task) in tasks.iter().enumerate() {
-            let own = self.single.gather(&c.transfer, rays, &task.receiver(points), cut);
-            (sum.radiance[lane], sum.limits[lane]) = (own.radiance, own.limit);
+            self.receivers.set([task.receiver(points)]);
+            let own = self.packet.gather(&c.transfer, rays, &self.receivers, cut);
+            (sum.radiance[lane], sum.limits[lane]) = (own.sum.radiance[0], own.sum.limits[0]);
             clusters[lane] = own.clusters.len() as u32;
         }
         if let Some(c) = &c.compensation {

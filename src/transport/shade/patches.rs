@@ -44,7 +44,7 @@ pub fn patches(
 }
 
 /// Moves a group for a shared cut out of the points `left`, in order. The group is the first point and up to fifteen
-/// points coherent with it, or the first point alone if there are too few. Returns false if no point is left.
+/// points coherent with it, or the first point alone if points share no cuts. Returns false if no point is left.
 pub(super) fn next_group(
     points: &ShadingPoints,
     settings: &ShadeSettings,
@@ -57,7 +57,7 @@ pub(super) fn next_group(
     let place = |point: u32| place(&points.geometry[point as usize]);
     let joins = |point: &u32| CoherenceLimit::of(diagonal).holds(place(first), place(*point));
     let count = left.iter().filter(|point| joins(point)).take(LANES).count();
-    let count = if settings.shares(count) { count } else { 1 };
+    let count = if settings.share { count } else { 1 };
     left.retain(|&point| {
         let joins = group.len() < count && (point == first || joins(&point));
         if joins {

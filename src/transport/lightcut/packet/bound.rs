@@ -1,10 +1,10 @@
 //! Upper bounds of a cluster's light at all receivers of a packet.
 
 use super::ReceiverPacket;
+use super::cluster_box::ClusterBox;
 use crate::lightcut::Transfer;
-use crate::lightcut::cluster_box::{ClusterBox, Place};
 use crate::lights::LightNode;
-use base::math::{F32x16, LANES, LUMINANCE, Lane, Mask16, V3, f32x16, lanes_in, luminance};
+use base::math::{F32x16, LANES, LUMINANCE, Lane, Mask16, f32x16, lanes_in, luminance};
 use world::material::DirectionBound;
 
 impl Transfer<'_> {
@@ -52,23 +52,4 @@ fn one_by_one(
         reflected[l] = luminance(receivers.get(l).max_reflection(&bound) * node.intensity);
     }
     f32x16::new(reflected)
-}
-
-impl Place<f32x16> for ReceiverPacket<'_> {
-    #[inline(always)]
-    fn position(&self) -> V3<f32x16> {
-        self.position.load()
-    }
-    #[inline(always)]
-    fn frame(&self) -> [V3<f32x16>; 3] {
-        [self.frame.axes[0].load(), self.frame.axes[1].load(), self.frame.axes[2].load()]
-    }
-    #[inline(always)]
-    fn mirror(&self) -> [V3<f32x16>; 3] {
-        [self.mirror.axes[0].load(), self.mirror.axes[1].load(), self.mirror.axes[2].load()]
-    }
-    #[inline(always)]
-    fn reach(&self) -> f32 {
-        self.reach
-    }
 }

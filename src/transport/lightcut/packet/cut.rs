@@ -48,7 +48,7 @@ pub struct PacketCut<'c> {
 
 /// Workspace for cuts of packets. Each thread has one, so that buffers are allocated once.
 #[derive(Default)]
-pub struct PacketLightcut {
+pub struct Lightcut {
     pub(super) clusters: Vec<PacketCluster>,
     /// Light of the clusters before visibility.
     pub(super) unshadowed: Vec<Unshadowed>,

@@ -1,18 +1,18 @@
 //! Light that a packet gathers from a cut.
 
 use super::refine::PacketRefinement;
-use super::{PacketCut, PacketLight, PacketLightcut, ReceiverPacket};
-use crate::lightcut::{CutSettings, PacketVisibility, Transfer};
+use super::{Lightcut, PacketCut, PacketLight, ReceiverPacket};
+use crate::lightcut::{CutSettings, Transfer, Visibility};
 use base::math::Vec3x16;
 
-impl PacketLightcut {
+impl Lightcut {
     /// Creates an empty workspace.
-    pub fn new() -> PacketLightcut {
-        PacketLightcut::default()
+    pub fn new() -> Lightcut {
+        Lightcut::default()
     }
 
     /// Gathers the light of all VPLs to within the error of `settings`, on average over the lanes.
-    pub fn gather<V: PacketVisibility>(
+    pub fn gather<V: Visibility>(
         &mut self,
         transfer: &Transfer,
         visibility: &V,

@@ -1,8 +1,8 @@
 //! Receivers of a packet, lane by lane.
 
-use crate::lightcut::{Receiver, to_vpl16};
-use crate::lights::{Vpl, VplKind};
-use base::math::{F32x16, Frame, LANES, LUMINANCE, Rgb, Vec3x16, first_lanes, lanes_in};
+use crate::lightcut::{Receiver, Visibility, to_vpl16};
+use crate::lights::{LightNode, LightTrees, Vpl, VplKind};
+use base::math::{F32x16, Frame, LANES, LUMINANCE, Rgb, V3, Vec3x16, f32x16, first_lanes, lanes_in};
 use embree::Rays16;
 use world::material::AlikeBsdfs16;
 
@@ -86,6 +86,31 @@ impl<'m> ReceiverPacket<'m> {
         to_vpl16(&self.position, &self.geometric_normal, vpl, kind)
     }
 
+    /// Returns the lanes of `lanes` that see the VPL, which represents `node`.
+    #[inline]
+    pub fn visible(&self, visibility: &impl Visibility, lanes: u16, vpl: &Vpl, node: &LightNode) -> u16 {
+        let rays = self.shadow_rays(vpl, node.kind());
+        visibility.visible16(&rays, lanes, Some(node.representative() as u32))
+    }
+
+    /// Multiplies the `light` in `lanes`, which see the VPL that represents `node`, by the transmittance of the thin
+    /// sheets on its way.
+    #[inline]
+    pub fn attenuate(
+        &self,
+        visibility: &impl Visibility,
+        lanes: u16,
+        trees: &LightTrees,
+        node: &LightNode,
+        light: &mut Vec3x16,
+    ) {
+        if visibility.sheets().is_some() {
+            let (vpl, before) = trees.representative(node);
+            let rays = self.shadow_rays(vpl, node.kind());
+            visibility.attenuate16(&rays, lanes, |lane| self.get(lane).sheets(before), light);
+        }
+    }
+
     /// Returns receiver number `lane`.
     pub fn get(&self, lane: usize) -> &Receiver<'m> {
         &self.receivers[lane]
@@ -104,6 +129,13 @@ impl Frames16 {
     #[inline(always)]
     pub fn normal(&self) -> &Vec3x16 {
         &self.axes[2]
+    }
+
+    /// Axes of all frames.
+    #[inline(always)]
+    pub fn load(&self) -> [V3<f32x16>; 3] {
+        let [x, y, z] = &self.axes;
+        [x.load(), y.load(), z.load()]
     }
 
     fn set(&mut self, lane: usize, frame: &Frame) {

@@ -1,11 +1,10 @@
 //! Refinement of a packet's cut.
 
 use super::cut::{Judgement, Sight};
-use super::{PacketCluster, PacketLightcut, ReceiverPacket, Unshadowed, luminances};
+use super::{Lightcut, PacketCluster, ReceiverPacket, Unshadowed, luminances};
 use crate::lightcut::clamp::{DOMINANT, DOMINANT_TO_REST, is_weak};
-use crate::lightcut::refinement::heir_and_other;
-use crate::lightcut::{CutSettings, PacketVisibility, Transfer};
-use crate::lights::LightTrees;
+use crate::lightcut::{CutSettings, Transfer, Visibility};
+use crate::lights::{LightNode, LightTrees};
 use base::math::{F32x16, LANES, Lane, Vec3x16, f32x16};
 
 /// Minimum luminance of a lane where errors are judged, relative to the brightest lane's.
@@ -42,13 +41,13 @@ pub(super) struct PacketRefinement<'a, 't, 'm, V> {
     fine: F32x16,
     /// Number of splits before the cap.
     room: usize,
-    cut: &'a mut PacketLightcut,
+    cut: &'a mut Lightcut,
 }
 
-impl<'a, 't, 'm, V: PacketVisibility> PacketRefinement<'a, 't, 'm, V> {
+impl<'a, 't, 'm, V: Visibility> PacketRefinement<'a, 't, 'm, V> {
     /// Prepares the refinement of the cut in the workspace `cut`.
     pub fn new(
-        cut: &'a mut PacketLightcut,
+        cut: &'a mut Lightcut,
         transfer: &'a Transfer<'t>,
         visibility: &'a V,
         receivers: &'a ReceiverPacket<'m>,
@@ -190,7 +189,8 @@ impl<'a, 't, 'm, V: PacketVisibility> PacketRefinement<'a, 't, 'm, V> {
         } else {
             self.cut.counts.bounds += self.receivers.len() as u64;
             let errors = self.transfer.errors16(self.receivers, n);
-            // As in a single point's cut, a cluster that gives more than a quarter of the total is split.
+            // A representative next to the points makes the whole cluster look near. So a cluster that gives more than
+            // a quarter of the total is split, whatever its expected error.
             let share = self.settings.epsilon / DOMINANT;
             (f32x16::new(counted) * share).max(f32x16::new(errors)).to_array()
         };
@@ -209,10 +209,10 @@ impl<'a, 't, 'm, V: PacketVisibility> PacketRefinement<'a, 't, 'm, V> {
         if doubtful != 0 {
             self.cut.counts.rays += u64::from(doubtful.count_ones());
             self.cut.counts.packets += 1;
-            seen |= self.visibility.visible16(self.receivers, doubtful, vpl, node);
+            seen |= self.receivers.visible(self.visibility, doubtful, vpl, node);
         }
         responses.keep(lit & seen);
-        self.visibility.attenuate16(self.receivers, lit & seen, self.trees, node, &mut responses);
+        self.receivers.attenuate(self.visibility, lit & seen, self.trees, node, &mut responses);
         (responses, Sight { known: known.known | lit, seen }, unshadowed)
     }
 
@@ -222,6 +222,14 @@ impl<'a, 't, 'm, V: PacketVisibility> PacketRefinement<'a, 't, 'm, V> {
         let relative = f32x16::new(self.cut.judgements[place].errors) * f32x16::new(*inverse_thresholds);
         (relative.sq() * relative).reduce_add() > self.receivers.len() as f32
     }
+}
+
+/// Returns the children of a node: first the heir, which shares the node's representative and hence its response.
+#[inline]
+fn heir_and_other(trees: &LightTrees, parent: &LightNode) -> Option<(u32, u32)> {
+    let left = parent.children()?;
+    let shares_left = trees.nodes[left as usize].representative() == parent.representative();
+    Some(if shares_left { (left, left + 1) } else { (left + 1, left) })
 }
 
 /// Folds lanes by halves, which compiles to vector code.

@@ -1,11 +1,11 @@
-//! A packet's lanes must agree with the single-point functions, which have tests of their own.
+//! A packet's lanes must agree with the light of single points, and cuts with cuts of single points.
 
 use super::*;
 use crate::lightcut::fixtures::{
-    Ball, EXACT, RandomNumbers, Unoccluded, all_kinds, all_materials, low_lamps, members, points_near_vpls,
-    profiles, random_receiver, rms, room,
+    Ball, EXACT, RandomNumbers, Unoccluded, all_kinds, all_materials, alone, low_lamps, members,
+    points_near_vpls, profiles, random_receiver, rms, room,
 };
-use crate::lightcut::{CutCounts, CutSettings, Lightcut, Receiver, Transfer, gather_all};
+use crate::lightcut::{CutCounts, CutSettings, Receiver, Transfer, gather_all};
 use crate::lights::{Family, LightTrees, Vpl, VplKind};
 use base::math::{LANES, Rgb, Vec3x16, luminance};
 use base::progress::Control;
@@ -97,7 +97,7 @@ fn errors(settings: &CutSettings) -> Vec<f32> {
         &Control::new(),
     );
     let transfer = Transfer::new(&trees, 1.73);
-    let (mut cut, mut points) = (PacketLightcut::new(), ReceiverPacket::new());
+    let (mut cut, mut points) = (Lightcut::new(), ReceiverPacket::new());
     let mut numbers = RandomNumbers(77);
     let mut errors = Vec::new();
     for _ in 0..30 {
@@ -126,7 +126,7 @@ fn no_cluster_gives_the_lanes_more_than_a_quarter_however_coarse_the_cut() {
     let mut numbers = RandomNumbers(8);
     let trees = low_lamps(&mut numbers);
     let transfer = Transfer::new(&trees, 1.7);
-    let (mut lightcut, mut points) = (PacketLightcut::new(), ReceiverPacket::new());
+    let (mut lightcut, mut points) = (Lightcut::new(), ReceiverPacket::new());
     let settings = CutSettings { epsilon: 0.5, ..EXACT };
     for _ in 0..40 {
         points.set(points_near_vpls(&mut numbers, LANES));
@@ -147,7 +147,7 @@ fn no_cluster_gives_the_lanes_more_than_a_quarter_however_coarse_the_cut() {
 }
 
 #[test]
-fn one_lane_clamps_as_a_single_point_does() {
+fn lanes_clamp_as_single_points_do() {
     let scene = all_materials();
     let materials = Materials::new(&scene);
     let mut set = room(2000, &mut RandomNumbers(4));
@@ -163,10 +163,11 @@ fn one_lane_clamps_as_a_single_point_does() {
     let settings = CutSettings { epsilon: 0.002, max_cut: 100_000, clamp: Some(0.02), origin: None };
     let mut points = ReceiverPacket::new();
     points.set([at(x), at(x + Vec3::X * 0.02)]);
-    let mut lightcut = PacketLightcut::new();
+    let mut lightcut = Lightcut::new();
     let PacketCut { sum, clusters, .. } = lightcut.gather(&transfer, &Unoccluded, &points, &settings);
     for (lane, radiance) in sum.radiance.iter().enumerate().take(2) {
-        let single = Lightcut::new().gather(&transfer, &Unoccluded, points.get(lane), &settings).radiance;
+        let point = alone(*points.get(lane));
+        let single = Lightcut::new().gather(&transfer, &Unoccluded, &point, &settings).sum.radiance[0];
         assert!((luminance(*radiance) / luminance(single) - 1.0).abs() < 0.01, "{radiance} {single}");
     }
     // The residue of random corrections may be anything.
@@ -194,7 +195,7 @@ fn the_cap_holds_for_the_packet() {
     let mut points = ReceiverPacket::new();
     points.set(neighbours(&materials, &scene, 1.0, 16, &mut RandomNumbers(3)));
     let settings = CutSettings { epsilon: 1e-4, max_cut: 77, clamp: None, origin: None };
-    let mut cut = PacketLightcut::new();
+    let mut cut = Lightcut::new();
     let size = cut.gather(&Transfer::new(&trees, 1.7), &Unoccluded, &points, &settings).clusters.len();
     assert_eq!((size, cut.counts.capped, cut.counts.cuts), (77, 16, 16));
 }

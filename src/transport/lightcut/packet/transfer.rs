@@ -2,7 +2,6 @@
 
 use super::ReceiverPacket;
 use crate::lightcut::Transfer;
-use crate::lightcut::cluster_box::Place;
 use crate::lights::{Vpl, VplKind};
 use base::math::{Lane, Mask16, V3, Vec3x16, lanes_in};
 
@@ -10,7 +9,7 @@ impl Transfer<'_> {
     /// Returns the lanes that a visible VPL of unit intensity lights, and its contributions.
     pub fn unshadowed16(&self, receivers: &ReceiverPacket, vpl: &Vpl, kind: VplKind) -> (u16, Vec3x16) {
         let (wi, irradiance) = self.incident(receivers.position.load(), vpl, kind);
-        let [x, y, z] = receivers.frame();
+        let [x, y, z] = receivers.frame.load();
         let cos = wi.dot(z);
         let mut responses = receivers.brdf.load().times(cos.positive() * irradiance);
         let general = Mask16::of(receivers.general);

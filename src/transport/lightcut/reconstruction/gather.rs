@@ -4,7 +4,7 @@ use super::basis::BasisValues;
 use super::classify::{EvaluatedCluster, MAX_CORRECTION, SampledCluster};
 use crate::lightcut::clamp::is_weak;
 use crate::lightcut::packet::{PacketCluster, luminances};
-use crate::lightcut::{CutCounts, PacketVisibility, ReceiverPacket, Transfer};
+use crate::lightcut::{CutCounts, ReceiverPacket, Transfer, Visibility};
 use base::math::{LANES, Rgb, Vec3x16};
 
 /// Gathering of a packet's light.
@@ -19,7 +19,7 @@ pub(super) struct Gathering<'a, 't, 'm, V> {
     pub counts: &'a mut CutCounts,
 }
 
-impl<V: PacketVisibility> Gathering<'_, '_, '_, V> {
+impl<V: Visibility> Gathering<'_, '_, '_, V> {
     /// Adds evaluated clusters. If a cluster is split, its children are split above the luminance `min_split`.
     pub fn evaluate(&mut self, clusters: &[EvaluatedCluster], min_split: f32) {
         let mut parts: Vec<EvaluatedCluster> = Vec::new();
@@ -86,9 +86,9 @@ impl<V: PacketVisibility> Gathering<'_, '_, '_, V> {
         if doubtful != 0 {
             self.counts.rays += u64::from(doubtful.count_ones());
             self.counts.packets += 1;
-            let visible = self.visibility.visible16(self.receivers, doubtful, vpl, n);
+            let visible = self.receivers.visible(self.visibility, doubtful, vpl, n);
             responses.keep(visible | !doubtful);
-            self.visibility.attenuate16(self.receivers, visible, self.transfer.trees, n, &mut responses);
+            self.receivers.attenuate(self.visibility, visible, self.transfer.trees, n, &mut responses);
         }
         Some(responses)
     }

@@ -35,7 +35,7 @@ mod gather;
 mod tests;
 
 use super::packet::{PacketCluster, PacketLight};
-use super::{CutCounts, CutSettings, PacketCut, PacketSum, PacketVisibility, ReceiverPacket, Transfer};
+use super::{CutCounts, CutSettings, PacketCut, PacketSum, ReceiverPacket, Transfer, Visibility};
 use base::math::Rgb;
 use classify::{Anchors, Class, EvaluatedCluster, SampledCluster};
 use fit::Interpolant;
@@ -92,7 +92,7 @@ impl ReconstructionCut {
 
     /// Gathers the light of all VPLs at points among the anchors. `start`, in [0, 1), is the random number that chooses
     /// the clusters to correct.
-    pub fn gather<V: PacketVisibility>(
+    pub fn gather<V: Visibility>(
         &mut self,
         transfer: &Transfer,
         visibility: &V,

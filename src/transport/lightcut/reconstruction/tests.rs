@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::lightcut::fixtures::{Ball, EXACT, RandomNumbers, rms, room};
-use crate::lightcut::{PacketLightcut, Receiver, Visibility};
+use crate::lightcut::{Lightcut, Receiver};
 use crate::lights::{Family, LightTrees};
 use base::math::{Frame, LANES, luminance};
 use base::progress::Control;
@@ -23,7 +23,7 @@ fn points_gather_nearly_the_light_of_cuts_of_their_own() {
         LightTrees::build(&[room(3000, &mut numbers)], Vec::new(), 1.7, Family::Divisive, &Control::new());
     let transfer = Transfer::new(&trees, 1.7);
     let receivers = lattice(32);
-    let (mut packet, mut points) = (PacketLightcut::new(), ReceiverPacket::new());
+    let (mut packet, mut points) = (Lightcut::new(), ReceiverPacket::new());
     let mut reconstruction = ReconstructionCut::default();
     points.set(receivers.iter().step_by(2).copied());
     let cut = packet.gather(&transfer, &ball, &points, &EXACT);
@@ -51,7 +51,7 @@ fn sampled_clusters_are_right_on_average() {
         LightTrees::build(&[room(3000, &mut numbers)], Vec::new(), 1.7, Family::Divisive, &Control::new());
     let transfer = Transfer::new(&trees, 1.7);
     let receivers = lattice(64);
-    let (mut packet, mut points) = (PacketLightcut::new(), ReceiverPacket::new());
+    let (mut packet, mut points) = (Lightcut::new(), ReceiverPacket::new());
     let mut reconstruction = ReconstructionCut::default();
     points.set(receivers.iter().skip(1).step_by(4).copied());
     let cut = packet.gather(&transfer, &ball, &points, &EXACT);
@@ -63,9 +63,9 @@ fn sampled_clusters_are_right_on_average() {
             let given = |cluster: &PacketCluster| {
                 let n = &trees.nodes[cluster.node as usize];
                 let vpl = &trees.vpls[n.representative()];
-                let seen = ball.visible(points.get(lane).position(), Vec3::ZERO, vpl, n);
+                let seen = points.visible(&ball, 1 << lane, vpl, n);
                 let response = transfer.unshadowed(points.get(lane), vpl, n.kind());
-                if seen { luminance(n.intensity * response) } else { 0.0 }
+                if seen != 0 { luminance(n.intensity * response) } else { 0.0 }
             };
             cut.clusters.iter().map(given).sum()
         })

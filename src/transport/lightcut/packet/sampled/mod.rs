@@ -18,11 +18,11 @@
 mod tests;
 
 use super::refine::PacketRefinement;
-use super::{PacketLightcut, PacketSum, ReceiverPacket, luminances};
+use super::{Lightcut, PacketSum, ReceiverPacket, luminances};
 use crate::lightcut::clamp::{DOMINANT, MAX_STEPS, frozen_luminance, is_weak};
-use crate::lightcut::{CutCounts, CutSettings, PacketVisibility, RayVisibility, Transfer, to_vpl};
-use crate::lights::{LightNode, Vpl};
-use base::math::{F32x16, LANES, Rgb, Vec3x16, lanes_in, luminance};
+use crate::lightcut::{CutCounts, CutSettings, Transfer, Visibility, to_vpl};
+use crate::lights::LightNode;
+use base::math::{F32x16, LANES, Rgb, Vec3x16, first_lanes, lanes_in, luminance};
 use base::sampling::{hash, unit};
 use embree::{Ray, Rays16};
 
@@ -65,7 +65,7 @@ pub struct SampledSettings<'a> {
 /// Workspace for samples of cuts. Each thread has one, so that buffers are allocated once.
 #[derive(Default)]
 pub struct SampledCut {
-    cut: PacketLightcut,
+    cut: Lightcut,
     /// Importance of each cluster in each lane, as luminance.
     importance: Vec<F32x16>,
     /// Samples of all lanes, before their VPLs are read.
@@ -79,8 +79,8 @@ pub struct SampledCut {
 /// Visibility of a cut in which all VPLs are visible.
 struct AllVisible;
 
-impl PacketVisibility for AllVisible {
-    fn visible16(&self, _: &ReceiverPacket, lanes: u16, _: &Vpl, _: &LightNode) -> u16 {
+impl Visibility for AllVisible {
+    fn visible16(&self, _: &Rays16, lanes: u16, _: Option<u32>) -> u16 {
         lanes
     }
 }
@@ -153,7 +153,7 @@ impl Samples {
 impl SampledCut {
     /// Gathers the light of all VPLs by samples; `None` if a cut takes less time. The counts hold the number of samples
     /// as the number of clusters.
-    pub fn gather<V: RayVisibility>(
+    pub fn gather<V: Visibility>(
         &mut self,
         transfer: &Transfer,
         visibility: &V,
@@ -204,7 +204,7 @@ impl SampledCut {
     }
 
     /// Takes the samples of all lanes, one for each step of importance.
-    fn sample<V: RayVisibility>(
+    fn sample<V: Visibility>(
         &mut self,
         transfer: &Transfer,
         visibility: &V,
@@ -312,7 +312,7 @@ impl Pending {
     }
 
     /// Traces the rays, and keeps the samples whose VPLs are visible.
-    fn trace<V: RayVisibility>(
+    fn trace<V: Visibility>(
         &mut self,
         visibility: &V,
         visible: &mut [Vec<Sample>; LANES],
@@ -324,7 +324,9 @@ impl Pending {
         }
         counts.rays += count as u64;
         counts.packets += 1;
-        for i in lanes_in(visibility.arriving16(&self.rays, count, &self.sheets, &mut self.light)) {
+        let free = visibility.visible16(&self.rays, first_lanes(count), None);
+        visibility.attenuate16(&self.rays, free, |i| self.sheets[i], &mut self.light);
+        for i in lanes_in(free) {
             let sample = Sample { light: self.light.get(i), factor: self.factors[i] };
             visible[usize::from(self.points[i])].push(sample);
         }

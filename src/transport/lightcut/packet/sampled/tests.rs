@@ -86,7 +86,7 @@ fn single_lights_give_no_more_than_their_share() {
     let mut points = ReceiverPacket::new();
     points.set((0..16).map(close));
     let clamped = CutSettings { clamp: Some(0.02), ..SETTINGS };
-    let mut cuts = PacketLightcut::new();
+    let mut cuts = Lightcut::new();
     let expected = cuts.gather(&transfer, &BALL, &points, &CutSettings { epsilon: 0.002, ..clamped }).sum;
     let all = |lane: usize| luminance(gather_all(&transfer, &BALL, points.get(lane)));
     let kept = |lane: usize| luminance(expected.radiance[lane]) / all(lane);

@@ -1,38 +1,27 @@
-//! Upper bounds of a cluster's geometry over its box, at one receiver or at sixteen.
+//! Upper bounds of a cluster's geometry over its box, at sixteen receivers.
 //!
 //! Paper: Walter et al., *Lightcuts*, 2005, section 4.1: the box is turned into the frame of the axis, where the
 //! maximum cosine to the axis is at its highest z and minimum distance from the axis.
 
-use super::Transfer;
-use super::expected::{Outlook, expected_share, lobe_at};
+use super::ReceiverPacket;
+use crate::lightcut::Transfer;
+use crate::lightcut::expected::{Outlook, expected_share, lobe_at};
 use crate::lights::{LightNode, VplKind};
-use base::math::{Frame, Lane, Mask, V3};
+use base::math::{Frame, Lane, Mask, V3, f32x16};
 use glam::Vec3;
 use world::material::{DirectionBound, LobeShape};
 
 /// Relative margin of boxes: more than the rounding of the values computed from them.
 const ROUNDING: f32 = 8.0 * f32::EPSILON;
 
-/// Where one receiver stands, or sixteen.
-pub(super) trait Place<L: Lane> {
-    /// Position.
-    fn position(&self) -> V3<L>;
-    /// Axes of the shading frame.
-    fn frame(&self) -> [V3<L>; 3];
-    /// Axes of the frame about the mirror direction of the eye.
-    fn mirror(&self) -> [V3<L>; 3];
-    /// Maximum absolute coordinate of any position.
-    fn reach(&self) -> f32;
-}
-
 /// Bounds of all factors but the material.
-pub(super) struct GeometryBound<L> {
+pub(super) struct GeometryBound {
     /// Bound of the emitter's cosine over the squared distance.
-    pub geometry: L,
+    pub geometry: f32x16,
     /// Bound of the receiver's cosine.
-    pub cos_x: L,
+    pub cos_x: f32x16,
     /// Expected error relative to the bound.
-    pub share: L,
+    pub share: f32x16,
 }
 
 /// Box of a cluster, widened by the rounding of any receiver.
@@ -47,21 +36,21 @@ pub(super) struct ClusterBox {
 impl Transfer<'_> {
     /// Returns the bounds of all factors but the material.
     #[inline(always)]
-    pub(super) fn geometry<L: Lane>(
+    pub(super) fn geometry(
         &self,
         cluster: &ClusterBox,
-        at: &impl Place<L>,
+        at: &ReceiverPacket,
         node: &LightNode,
-    ) -> GeometryBound<L> {
-        let (frame, c) = (at.frame(), cluster.offset(at));
+    ) -> GeometryBound {
+        let (frame, c) = (at.frame.load(), cluster.offset(at));
         let cos_x = cluster.max_cos(c, &frame).positive();
         if !cos_x.is_positive().any() {
-            return GeometryBound { geometry: L::from(0.0), cos_x, share: L::from(0.0) };
+            return GeometryBound { geometry: f32x16::from(0.0), cos_x, share: f32x16::from(0.0) };
         }
         let centre_sq = c.length_sq();
         let (cos_y, centre_y) = cluster.emitted(c, centre_sq.sqrt(), node);
         let near_sq =
-            if cluster.local { cluster.gap_sq(c).max(L::from(self.min_dist_sq)) } else { centre_sq };
+            if cluster.local { cluster.gap_sq(c).max(f32x16::from(self.min_dist_sq)) } else { centre_sq };
         let share = expected_share(Outlook {
             near_sq,
             centre_sq,
@@ -85,39 +74,40 @@ impl ClusterBox {
 
     /// Bounds the directions to the cluster, for a lobe.
     #[inline(always)]
-    pub fn directions<L: Lane>(&self, at: &impl Place<L>, cos_x: L) -> DirectionBound<L> {
+    pub fn directions(&self, at: &ReceiverPacket, cos_x: f32x16) -> DirectionBound<f32x16> {
         let c = self.offset(at);
-        let [x, y, (z, half_z)] = self.turned(c, &at.frame());
+        let [x, y, (z, half_z)] = self.turned(c, &at.frame.load());
         let low = z - half_z;
         let far_sq = (x.0.abs() + x.1).sq() + (y.0.abs() + y.1).sq() + low.sq();
-        let cos_i_min = (low * far_sq.max(L::from(1e-37)).rsqrt()).positive();
-        let cos_mirror_max = self.max_cos(c, &at.mirror());
-        DirectionBound { cos_i_max: cos_x.min(L::from(1.0)), cos_i_min, cos_mirror_max }
+        let cos_i_min = (low * far_sq.max(f32x16::from(1e-37)).rsqrt()).positive();
+        let cos_mirror_max = self.max_cos(c, &at.mirror.load());
+        DirectionBound { cos_i_max: cos_x.min(f32x16::from(1.0)), cos_i_min, cos_mirror_max }
     }
 
     /// Returns the centre of the box relative to a receiver.
     #[inline(always)]
-    fn offset<L: Lane>(&self, at: &impl Place<L>) -> V3<L> {
+    fn offset(&self, at: &ReceiverPacket) -> V3<f32x16> {
         let centre = V3::splat(self.centre);
-        if self.local { centre - at.position() } else { centre }
+        if self.local { centre - at.position.load() } else { centre }
     }
 
     /// Returns the squared distance of the box from a receiver.
     #[inline(always)]
-    fn gap_sq<L: Lane>(&self, c: V3<L>) -> L {
-        (c.abs() - V3::splat(self.half)).map(L::positive).length_sq()
+    fn gap_sq(&self, c: V3<f32x16>) -> f32x16 {
+        (c.abs() - V3::splat(self.half)).map(f32x16::positive).length_sq()
     }
 
     /// Returns the centres and half extents along three axes.
     #[inline(always)]
-    fn turned<L: Lane>(&self, c: V3<L>, axes: &[V3<L>; 3]) -> [(L, L); 3] {
-        let along = |axis: V3<L>| (c.dot(axis), axis.abs().along(self.half) + L::from(self.rounding));
+    fn turned(&self, c: V3<f32x16>, axes: &[V3<f32x16>; 3]) -> [(f32x16, f32x16); 3] {
+        let along =
+            |axis: V3<f32x16>| (c.dot(axis), axis.abs().along(self.half) + f32x16::from(self.rounding));
         [along(axes[0]), along(axes[1]), along(axes[2])]
     }
 
     /// Returns the maximum cosine to the last of three axes.
     #[inline(always)]
-    fn max_cos<L: Lane>(&self, c: V3<L>, axes: &[V3<L>; 3]) -> L {
+    fn max_cos(&self, c: V3<f32x16>, axes: &[V3<f32x16>; 3]) -> f32x16 {
         let [x, y, (z, half_z)] = self.turned(c, axes);
         max_cos(x, y, z + half_z)
     }
@@ -125,19 +115,19 @@ impl ClusterBox {
     /// Returns the most that a member emits towards a receiver, relative to its intensity; and what the centre emits,
     /// times the distance.
     #[inline(always)]
-    fn emitted<L: Lane>(&self, c: V3<L>, distance: L, node: &LightNode) -> (L, L) {
-        let (one, lobed) = (L::from(1.0), node.kind() == VplKind::Lobed);
+    fn emitted(&self, c: V3<f32x16>, distance: f32x16, node: &LightNode) -> (f32x16, f32x16) {
+        let (one, lobed) = (f32x16::from(1.0), node.kind() == VplKind::Lobed);
         if !self.local || node.cos_beta <= -1.0 && !lobed {
             return (one, distance);
         }
         let axes = Frame::from_normal(-node.axis);
-        let along = |axis: Vec3| (c.along(axis), L::from(axis.abs().dot(self.half) + self.rounding));
+        let along = |axis: Vec3| (c.along(axis), f32x16::from(axis.abs().dot(self.half) + self.rounding));
         let (x, y, z) = (along(axes.tangent), along(axes.bitangent), along(axes.normal));
         let cos_theta = max_cos(x, y, z.0 + z.1);
         let sin_theta = cos_theta.sq().rest().positive().sqrt();
         // The margin covers the rounding of sin θ where cos θ is near 1.
-        let turned = cos_theta * node.cos_beta + sin_theta * node.sin_beta() + L::from(1e-6);
-        let most = L::pick(cos_theta.gt(L::from(node.cos_beta)), one, turned.min(one));
+        let turned = cos_theta * node.cos_beta + sin_theta * node.sin_beta() + f32x16::from(1e-6);
+        let most = f32x16::pick(cos_theta.gt(f32x16::from(node.cos_beta)), one, turned.min(one));
         if lobed {
             (LobeShape::max_share(most, node.width_sq()), lobe_at(z.0, distance, node.width_sq()))
         } else {
@@ -148,10 +138,10 @@ impl ClusterBox {
 
 /// Returns the maximum cosine to z over a box given by centre and half extent along x and y, and its highest `z`.
 #[inline(always)]
-fn max_cos<L: Lane>((x, half_x): (L, L), (y, half_y): (L, L), z: L) -> L {
+fn max_cos((x, half_x): (f32x16, f32x16), (y, half_y): (f32x16, f32x16), z: f32x16) -> f32x16 {
     let (x, y) = (x.abs(), y.abs());
     let near_sq = (x - half_x).positive().sq() + (y - half_y).positive().sq();
     let far_sq = (x + half_x).sq() + (y + half_y).sq();
-    let across_sq = L::pick(z.is_positive(), near_sq, far_sq);
-    z * z.mul_add(z, across_sq).max(L::from(1e-37)).rsqrt()
+    let across_sq = f32x16::pick(z.is_positive(), near_sq, far_sq);
+    z * z.mul_add(z, across_sq).max(f32x16::from(1e-37)).rsqrt()
 }
