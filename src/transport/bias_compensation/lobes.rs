@@ -5,8 +5,8 @@
 //! b/G) of the unlimited light of the diffuse one, which itself lacks max(0, 1 - b/G).
 
 use super::Compensation;
-use super::near_surface::{BRIGHTER, Limit, NearSurface};
-use crate::lightcut::{PacketCluster, PacketCut};
+use super::near_surface::NearSurface;
+use crate::lightcut::{BRIGHTER, PacketCluster, PacketCut};
 use crate::lights::VplKind;
 use base::math::{Rgb, V3};
 use glam::Vec3;
@@ -47,8 +47,7 @@ impl NearSurface {
         for lobe in bsdf.reflected_lobes(local) {
             let peak = PI * lobe.peak;
             let given = peak * lobe.shape.share(self.normal, wi, V3::<f32>::splat(lack.out)) / cos;
-            let limited = if let Limit::Geometry(_) = lack.limit { peak.min(BRIGHTER) } else { 1.0 };
-            lacking += lobe.albedo * f32::max(given - limited * lack.kept, 0.0);
+            lacking += lobe.albedo * f32::max(given - peak.min(BRIGHTER) * lack.kept, 0.0);
             diffuse -= lobe.albedo;
         }
         lacking + diffuse * (1.0 - lack.kept).max(0.0)
@@ -75,8 +74,8 @@ mod tests {
         (world, surface)
     }
 
-    fn seen(surface: Surface, out: Vec3, limit: Limit, kept: f32) -> NearSurface {
-        let lack = Lack { out, kept, limit, by_lobes: true };
+    fn seen(surface: Surface, out: Vec3, kept: f32) -> NearSurface {
+        let lack = Lack { out, kept, by_lobes: true };
         let normal = Vec3::Z;
         NearSurface { surface, distance: 1.0, cos: 1.0, normal, weight: Rgb::ONE, emitted: Rgb::ZERO, lack }
     }
@@ -85,7 +84,6 @@ mod tests {
     fn a_lobe_gives_what_its_surface_reflects_but_for_what_virtual_lights_have_kept() {
         let (world, surface) = plate();
         let bsdf = world.bsdf(&surface);
-        let limit = Limit::Irradiance(1.0);
         for (out, wi) in [
             (Vec3::Z, Vec3::Z),
             (Vec3::new(0.6, 0.0, 0.8), Vec3::new(-0.6, 0.0, 0.8)),
@@ -93,24 +91,25 @@ mod tests {
         ] {
             let [local_out, local_in] = [out, wi].map(|v| surface.frame.to_local(v));
             let reflected = bsdf.eval(local_out, local_in).x * PI;
-            let given = |limit, kept| seen(surface, out, limit, kept).lacking(&bsdf, wi).x;
-            let whole = given(limit, 0.0);
+            let given = |kept| seen(surface, out, kept).lacking(&bsdf, wi).x;
+            let whole = given(0.0);
             // Facets' Fresnel reflectance is not that of the whole lobe.
             assert!((whole / reflected - 1.0).abs() < 0.03, "{out} {wi}: {whole} for {reflected}");
             for kept in [0.3, 1.5, 3.0] {
-                let lacking = (whole - kept * bsdf.diffuse_albedo(local_in).x).max(0.0);
-                assert!((given(limit, kept) - lacking).abs() < 1e-4, "{out} {wi} {kept}");
-                // Geometry terms are limited where lobes may give more.
-                assert!(given(Limit::Geometry(1.0), kept) <= given(limit, kept));
+                // The peak of a lobe is limited, where it may give more than a diffuse surface.
+                let most = whole - kept * bsdf.diffuse_albedo(local_in).x;
+                let least = whole - BRIGHTER * kept * bsdf.diffuse_albedo(local_in).x;
+                let given = given(kept);
+                assert!(given >= least.max(0.0) - 1e-4 && given <= most.max(0.0) + 1e-4, "{out} {wi} {kept}");
             }
-            assert_eq!(seen(surface, out, limit, MAX_LOBE).diffuse(&bsdf), Rgb::ZERO);
+            assert_eq!(seen(surface, out, MAX_LOBE).diffuse(&bsdf), Rgb::ZERO);
         }
     }
 
     #[test]
     fn diffuse_surfaces_lack_their_share() {
         let (_, surface) = plate();
-        let lack = |kept| Lack { by_lobes: false, ..seen(surface, Vec3::Z, Limit::Geometry(1.0), kept).lack };
+        let lack = |kept| Lack { by_lobes: false, ..seen(surface, Vec3::Z, kept).lack };
         assert_eq!([0.0, 0.25, 1.0, 2.0].map(|kept| lack(kept).weight()), [1.0, 0.75, 0.0, 0.0]);
     }
 }

@@ -6,16 +6,16 @@
 //! directions distributed by the cosine. G exceeds b only if r < b^(-1/2), so rays end there and are
 //! cheap.
 //!
-//! [`short_rays`] traces them, and [`points`] adds the compensation of shading points. The radiance cache compensates
-//! its records itself, since it also needs their gradients.
+//! [`crate::lightcut::Clamps`] limits virtual lights by the bound. [`short_rays`] traces the rays from the same points
+//! with the same bound, and [`points`] gathers the light at the surfaces that they meet.
 //!
 //! Virtual lights on area lights count with cosθ_x cosθ_y / max(r², A). A is the area that they represent, to
 //! within a factor of 2 (see [`crate::lights::size_of_area`]). Rays that hit the light at r find max(0, 1 -
 //! r²/A) of its radiance.
 //!
 //! Deviations: the paper does not limit direct light, hence not its second kind above. b comes from the mean intensity
-//! of the indirect virtual lights ([`crate::lights::Intensities`]) around the point. If limits are those of irradiance,
-//! it comes from those around the surface met. So a much brighter virtual light may give more than the limit. Every
+//! of the indirect virtual lights ([`crate::lights::Intensities`]) around the point. Virtual lights much brighter than
+//! the mean are limited more, and the difference stays lost. Every
 //! point is compensated, even if no light of its cut is clamped: the two parts complement each other on average only.
 //! All points of an image share the directions, in frames of their own, so that their errors are similar and no noise
 //! is visible between them. Surfaces that rays meet reflect as virtual lights do: rough metals by their lobes
@@ -31,7 +31,6 @@ pub mod short_rays;
 
 use crate::lightcut::Transfer;
 use crate::lights::Lights;
-use glam::Vec3;
 use world::World;
 
 /// Compensation at all points of a scene.
@@ -52,13 +51,6 @@ impl<'a> Compensation<'a> {
     pub fn new(world: &'a World, lights: &'a Lights) -> Compensation<'a> {
         let max_near_sq = lights.near_sq.iter().copied().fold(0.0, f32::max);
         Compensation { world, transfer: Transfer::of(lights, true), lights, max_near_sq }
-    }
-
-    /// Returns the bound of the geometry term at which a light of the mean intensity around a point gives it the
-    /// irradiance `limit`.
-    pub fn bound(&self, x: Vec3, limit: f32) -> f32 {
-        let intensity = self.lights.intensities.as_ref().map_or(0.0, |intensities| intensities.around(x));
-        if intensity > 0.0 { limit / intensity } else { f32::INFINITY }
     }
 }
 

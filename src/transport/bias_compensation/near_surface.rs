@@ -4,21 +4,8 @@ use base::math::Rgb;
 use glam::Vec3;
 use world::Surface;
 
-/// Maximum luminance that a virtual light may give, relative to the limit, if geometry terms are limited. A much
-/// brighter one would leave a spot.
-pub const BRIGHTER: f32 = 2.0;
-
 /// Maximum light of a lobe, relative to a diffuse surface of the same flux, that short rays account for.
 pub(super) const MAX_LOBE: f32 = 4.0;
-
-/// Limit of indirect virtual lights; none if it is not positive and finite.
-#[derive(Clone, Copy, Debug)]
-pub enum Limit {
-    /// Limit of the geometry term.
-    Geometry(f32),
-    /// Limit of the luminance of the irradiance.
-    Irradiance(f32),
-}
 
 /// Light that virtual lights lack at a surface met by a short ray.
 #[derive(Clone, Copy, Debug)]
@@ -27,8 +14,6 @@ pub struct Lack {
     pub out: Vec3,
     /// Bound of the geometry term of virtual lights, relative to the ray's geometry term: b/G.
     pub kept: f32,
-    /// Limit of the virtual lights.
-    pub limit: Limit,
     /// True if the surface radiates by lobes.
     pub by_lobes: bool,
 }

@@ -1,16 +1,15 @@
-//! Compensation of shading points for clamped virtual lights close to them.
+//! Compensation of up to sixteen points for clamped virtual lights close to them.
 //!
-//! Every point of a patch traces short rays. Irradiance is gathered at up to sixteen of the surfaces that the anchors'
-//! rays meet, and interpolated to the other surfaces met from the patch.
+//! Every point traces short rays. Irradiance is gathered at up to sixteen of the surfaces that they meet, and
+//! interpolated to the other surfaces met. Further points of a patch use the irradiance of its first points.
 //!
-//! Deviations: only light that bases reflect is compensated, not that of lobes. Cuts limit the luminance of a virtual
-//! light, not its geometry term. Both are equal for lights of the mean intensity around the surface met.
+//! Deviations: only light that bases reflect is compensated, not that of lobes.
 
-use super::near_surface::{Limit, NearSurface};
+use super::near_surface::NearSurface;
 use super::short_rays::{self, ClampedPoint};
 use super::{Compensation, choose_evenly, lobes};
 use crate::lightcut::{
-    CutCounts, CutSettings, Lightcut, PacketCut, PacketSum, Receiver, ReceiverPacket, SampledCut,
+    CutCounts, CutSettings, Lightcut, MAX_STEPS, PacketCut, PacketSum, Receiver, ReceiverPacket, SampledCut,
     SampledSettings, Samples, frozen_luminance,
 };
 use crate::lights::Origin;
@@ -31,12 +30,6 @@ const EPSILON: f32 = 0.1;
 
 /// Maximum number of clusters in these lightcuts.
 const MAX_CUT: usize = 600;
-
-/// Maximum number of steps towards a total of which no cluster gives more than ε.
-const MAX_STEPS: u32 = 8;
-
-/// Clamp of these lightcuts: larger than elsewhere, since light clamped here stays lost.
-const CLAMP: f32 = 0.05;
 
 /// Samples at a surface met, if points are lit by samples.
 const SAMPLES: Samples = Samples { whole: 16.0, least: 16.0 };
@@ -77,6 +70,16 @@ pub struct NearLight {
     places: Vec<(SurfacePoint, Rgb)>,
 }
 
+/// Irradiance that a point lacks from a surface, but for a coat of the point.
+pub struct Lacking<'a> {
+    /// The surface.
+    pub near: &'a NearSurface,
+    /// Light that the surface reflects.
+    pub reflected: Rgb,
+    /// Light that the surface emits.
+    pub emitted: Rgb,
+}
+
 impl Compensator {
     /// Adds the light that the anchors of a patch lack to their `sum` of the light of one origin or of both. Returns
     /// the light near the patch; `None` if it is so little that other points need no compensation. With a `seed`, the
@@ -89,19 +92,17 @@ impl Compensator {
         sum: &mut PacketSum,
         seed: Option<u32>,
     ) -> Option<NearLight> {
-        self.trace(c, origin, receivers, &sum.limits);
         let irradiance = mean_irradiance(receivers, &sum.radiance);
-        let mut lacking = [0.0; LANES];
-        for (lane, near) in &self.met {
-            let radiance = irradiance * luminance(near.weight) + luminance(near.emitted);
-            lacking[*lane] += radiance * (PI / RAYS as f32);
-        }
-        if !lacking.iter().any(|&lacking| lacking > NEGLIGIBLE * irradiance) {
-            return None;
-        }
-        let light = NearLight { origin, places: self.gather(c, receivers, irradiance, seed) };
-        self.add_met(c, &light, receivers, sum);
-        Some(light)
+        let mut found = 0.0;
+        let places = self.lacking(
+            c,
+            &clamped(origin, receivers, sum),
+            irradiance,
+            seed,
+            reflect(receivers, sum, &mut found),
+        );
+        self.counts.found += found;
+        Some(NearLight { origin, places: places? })
     }
 
     /// Adds the light that further points of the patch lack to their `sum`.
@@ -112,8 +113,36 @@ impl Compensator {
         receivers: &ReceiverPacket,
         sum: &mut PacketSum,
     ) {
-        self.trace(c, light.origin, receivers, &sum.limits);
-        self.add_met(c, light, receivers, sum);
+        let mut found = 0.0;
+        self.trace(c, &clamped(light.origin, receivers, sum));
+        self.interpolate(c, &light.places, reflect(receivers, sum, &mut found));
+        self.counts.found += found;
+    }
+
+    /// Calls `add` with the light that each of up to sixteen points lacks from each surface close to it. `irradiance`
+    /// is the mean luminance at the points. Returns the irradiance at some of the surfaces; `None` if the lacking light
+    /// is negligible. With a `seed`, the surfaces are lit by samples.
+    pub fn lacking(
+        &mut self,
+        c: &Compensation,
+        points: &[ClampedPoint],
+        irradiance: f32,
+        seed: Option<u32>,
+        add: impl FnMut(usize, Lacking),
+    ) -> Option<Vec<(SurfacePoint, Rgb)>> {
+        self.trace(c, points);
+        let mut lacking = [0.0; LANES];
+        for (lane, near) in &self.met {
+            // The threshold assumes that the surfaces met are lit like the points.
+            let radiance = irradiance * luminance(near.weight) + luminance(near.emitted);
+            lacking[*lane] += radiance * (PI / RAYS as f32);
+        }
+        if !lacking.iter().any(|&lacking| lacking > NEGLIGIBLE * irradiance) {
+            return None;
+        }
+        let places = self.gather(c, points, irradiance, seed);
+        self.interpolate(c, &places, add);
+        Some(places)
     }
 
     /// Returns the work since the last call.
@@ -123,28 +152,10 @@ impl Compensator {
         CompensationCounts { cuts, ..std::mem::take(&mut self.counts) }
     }
 
-    fn trace(
-        &mut self,
-        c: &Compensation,
-        origin: Option<Origin>,
-        receivers: &ReceiverPacket,
-        limits: &[f32; LANES],
-    ) {
-        let gathers = |of: Origin| origin.is_none_or(|origin| origin == of);
-        let (direct, indirect) = (gathers(Origin::Direct), gathers(Origin::Indirect));
-        let clamped: Vec<ClampedPoint> = (0..receivers.len())
-            .map(|lane| {
-                let r = receivers.get(lane);
-                let base = luminance(r.base_brdf());
-                let (position, normal) = r.place();
-                let limit = if indirect && base > 0.0 { limits[lane] / base } else { f32::INFINITY };
-                let point = SurfacePoint { position, normal, geometric_normal: r.geometric_normal() };
-                ClampedPoint { point, limit: Limit::Irradiance(limit), direct: direct && base > 0.0 }
-            })
-            .collect();
+    fn trace(&mut self, c: &Compensation, points: &[ClampedPoint]) {
         self.met.clear();
         let met = &mut self.met;
-        self.counts.rays += short_rays::trace(c, &clamped, RAYS, |lane, near| met.push((lane, near)));
+        self.counts.rays += short_rays::trace(c, points, RAYS, |lane, near| met.push((lane, near)));
     }
 
     /// Gathers irradiance at some of the surfaces met, chosen in proportion to their weights, by a cut or by samples of
@@ -152,7 +163,7 @@ impl Compensator {
     fn gather(
         &mut self,
         c: &Compensation,
-        receivers: &ReceiverPacket,
+        points: &[ClampedPoint],
         baseline: f32,
         seed: Option<u32>,
     ) -> Vec<(SurfacePoint, Rgb)> {
@@ -170,7 +181,7 @@ impl Compensator {
             let (lane, near) = met(order[i]);
             let (position, geometric_normal) = (near.surface.position, near.surface.normal);
             places.push((SurfacePoint { position, normal: near.normal, geometric_normal }, Rgb::ZERO));
-            of_places.push((*near, receivers.get(*lane).edges().saturating_sub(1)));
+            of_places.push((*near, points[*lane].edges.saturating_sub(1)));
         });
         let receiver = |((p, _), (_, edges)): (&(SurfacePoint, Rgb), &(NearSurface, u16))| {
             Receiver::irradiance(p.position, p.geometric_normal, &Frame::from_normal(p.normal))
@@ -178,8 +189,12 @@ impl Compensator {
                 .with_edges(*edges)
         };
         self.receivers.set(places.iter().zip(&of_places).map(receiver));
-        let settings =
-            CutSettings { epsilon: EPSILON, max_cut: MAX_CUT, clamp: Some(CLAMP), ..CutSettings::default() };
+        let settings = CutSettings {
+            epsilon: EPSILON,
+            max_cut: MAX_CUT,
+            clamp: Some(EPSILON),
+            ..CutSettings::default()
+        };
         // Lobes need the clusters of a cut.
         let seed = seed.filter(|_| of_places.iter().all(|(near, _)| !near.lack.by_lobes));
         let samples = seed.and_then(|seed| {
@@ -200,42 +215,68 @@ impl Compensator {
         places
     }
 
-    fn add_met(
-        &mut self,
+    /// Calls `add` with the light of each surface met, which is lit like the `places` near it.
+    fn interpolate(
+        &self,
         c: &Compensation,
-        light: &NearLight,
-        receivers: &ReceiverPacket,
-        sum: &mut PacketSum,
+        places: &[(SurfacePoint, Rgb)],
+        mut add: impl FnMut(usize, Lacking),
     ) {
         let min_distance = 1e-6 * c.world.diagonal;
         for (lane, near) in &self.met {
-            let r = receivers.get(*lane);
-            let passed = r.coat_transmittance(near.surface.position - r.position());
-            let reflected = near.weight * light.interpolated(near, min_distance * min_distance);
-            let factor = r.base_brdf() * (passed * PI / RAYS as f32);
-            let added = factor * (reflected + near.emitted);
-            if added.is_finite() {
-                sum.radiance[*lane] += added;
-                self.counts.found += f64::from(luminance(factor * reflected));
+            let reflected = near.weight * interpolated(places, near, min_distance * min_distance);
+            let [reflected, emitted] =
+                [reflected, near.emitted].map(|radiance| radiance * (PI / RAYS as f32));
+            if (reflected + emitted).is_finite() {
+                add(*lane, Lacking { near, reflected, emitted });
             }
         }
     }
 }
 
-impl NearLight {
-    /// Returns the mean irradiance of the places, weighted towards near places of similar orientation. Places that face
-    /// the other way, which may be on the other side of a wall, count as dark.
-    fn interpolated(&self, near: &NearSurface, min_sq: f32) -> Rgb {
-        let (mut sum, mut weights) = (Rgb::ZERO, 0.0);
-        for (place, irradiance) in &self.places {
-            let cos = place.normal.dot(near.normal);
-            let facing = cos.max(0.0);
-            let dist_sq = place.position.distance_squared(near.surface.position);
-            let weight = (ASIDE + facing * facing) / (dist_sq + min_sq);
-            sum += if cos > OPPOSITE { *irradiance * weight } else { Rgb::ZERO };
-            weights += weight;
+/// Returns the mean irradiance of the places, weighted towards near places of similar orientation. Places that face the
+/// other way, which may be on the other side of a wall, count as dark.
+fn interpolated(places: &[(SurfacePoint, Rgb)], near: &NearSurface, min_sq: f32) -> Rgb {
+    let (mut sum, mut weights) = (Rgb::ZERO, 0.0);
+    for (place, irradiance) in places {
+        let cos = place.normal.dot(near.normal);
+        let facing = cos.max(0.0);
+        let dist_sq = place.position.distance_squared(near.surface.position);
+        let weight = (ASIDE + facing * facing) / (dist_sq + min_sq);
+        sum += if cos > OPPOSITE { *irradiance * weight } else { Rgb::ZERO };
+        weights += weight;
+    }
+    if weights > 0.0 { sum / weights } else { Rgb::ZERO }
+}
+
+/// Returns the points whose light of one origin, or of both, a cut has clamped.
+fn clamped(origin: Option<Origin>, receivers: &ReceiverPacket, sum: &PacketSum) -> Vec<ClampedPoint> {
+    let gathers = |of: Origin| origin.is_none_or(|origin| origin == of);
+    let point = |lane: usize| {
+        let r = receivers.get(lane);
+        let has_base = luminance(r.base_brdf()) > 0.0;
+        let (position, normal) = r.place();
+        ClampedPoint {
+            point: SurfacePoint { position, normal, geometric_normal: r.geometric_normal() },
+            bound: if gathers(Origin::Indirect) { sum.clamps.bounds[lane] } else { f32::INFINITY },
+            direct: gathers(Origin::Direct) && has_base,
+            edges: r.edges(),
         }
-        if weights > 0.0 { sum / weights } else { Rgb::ZERO }
+    };
+    (0..receivers.len()).map(point).collect()
+}
+
+/// Returns a function that adds the light reflected by the points' bases to `sum`, and its luminance to `found`.
+fn reflect<'a>(
+    receivers: &'a ReceiverPacket,
+    sum: &'a mut PacketSum,
+    found: &'a mut f64,
+) -> impl FnMut(usize, Lacking) + 'a {
+    |lane, Lacking { near, reflected, emitted }| {
+        let r = receivers.get(lane);
+        let factor = r.base_brdf() * r.coat_transmittance(near.surface.position - r.position());
+        sum.radiance[lane] += factor * (reflected + emitted);
+        *found += f64::from(luminance(factor * reflected));
     }
 }
 
@@ -249,7 +290,6 @@ fn limited(c: &Compensation, cut: &PacketCut, near: &NearSurface, lane: usize, b
             let given = node.intensity * cluster.responses.get(lane);
             let max = match node.origin() {
                 Origin::Direct => f32::INFINITY,
-                Origin::Indirect if node.is_leaf() => cut.sum.limits[lane].min(limit),
                 Origin::Indirect => limit,
             };
             let y = luminance(given);
@@ -295,7 +335,7 @@ mod tests {
         let ray = Ray { origin, t_near: 0.0, direction: -Vec3::Z, t_far: f32::INFINITY };
         let surface = world(scene).intersect(&ray).expect("the sheet");
         let place = |normal| SurfacePoint { position: surface.position, normal, geometric_normal: Vec3::Z };
-        let lack = Lack { out: Vec3::Z, kept: 0.0, limit: Limit::Irradiance(1.0), by_lobes: false };
+        let lack = Lack { out: Vec3::Z, kept: 0.0, by_lobes: false };
         let seen = |normal| NearSurface {
             surface,
             lack,
@@ -305,14 +345,14 @@ mod tests {
             weight: Rgb::ONE,
             emitted: Rgb::ZERO,
         };
-        let light = NearLight { origin: None, places: vec![(place(Vec3::Z), Rgb::ONE)] };
-        assert_eq!(light.interpolated(&seen(-Vec3::Z), 1e-12), Rgb::ZERO);
+        let places = [(place(Vec3::Z), Rgb::ONE)];
+        assert_eq!(interpolated(&places, &seen(-Vec3::Z), 1e-12), Rgb::ZERO);
         let slanted = Vec3::new(0.6, 0.0, 0.8);
         for normal in [Vec3::Z, slanted, Vec3::X] {
-            let error = light.interpolated(&seen(normal), 1e-12) - Rgb::ONE;
+            let error = interpolated(&places, &seen(normal), 1e-12) - Rgb::ONE;
             assert!(error.abs().max_element() < 1e-6, "{normal}");
         }
-        let both = NearLight { places: vec![(place(Vec3::Z), Rgb::ONE), (place(-Vec3::Z), Rgb::X)], ..light };
-        assert!((both.interpolated(&seen(-Vec3::Z), 1e-12) - Rgb::X).abs().max_element() < 2e-3);
+        let both = [(place(Vec3::Z), Rgb::ONE), (place(-Vec3::Z), Rgb::X)];
+        assert!((interpolated(&both, &seen(-Vec3::Z), 1e-12) - Rgb::X).abs().max_element() < 2e-3);
     }
 }

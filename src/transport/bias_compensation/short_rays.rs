@@ -4,7 +4,7 @@
 //! lights close behind a pane stays lost.
 
 use super::Compensation;
-use super::near_surface::{Lack, Limit, MAX_LOBE, NearSurface};
+use super::near_surface::{Lack, MAX_LOBE, NearSurface};
 use base::math::{Frame, LANES, Rgb, lanes_in, luminance};
 use base::sampling::{cosine_hemisphere, owen_sobol_2d};
 use embree::{Hit, Hits16, Ray, Rays16};
@@ -16,19 +16,17 @@ use world::shadow;
 /// Salt of the seed for directions.
 const SALT: u32 = 0x5eed;
 
-/// Maximum intensity of virtual lights near a point that rays reach, relative to the mean around the point, if limits
-/// are those of irradiance.
-const MAX_TO_MEAN: f32 = 4.0;
-
 /// Point whose virtual lights are limited.
 #[derive(Clone, Copy, Debug)]
 pub struct ClampedPoint {
     /// Position and normals.
     pub point: SurfacePoint,
-    /// Limit of each indirect virtual light.
-    pub limit: Limit,
+    /// Maximum geometry term of an indirect virtual light; none if it is not positive and finite.
+    pub bound: f32,
     /// True if light from area lights is compensated too.
     pub direct: bool,
+    /// Maximum number of edges that light may take to the point.
+    pub edges: u16,
 }
 
 impl Compensation<'_> {
@@ -48,11 +46,7 @@ pub fn trace(
 ) -> u64 {
     let points = &points[..points.len().min(LANES)];
     let reach_sq = |p: &ClampedPoint| {
-        let bound = match p.limit {
-            Limit::Geometry(bound) => bound,
-            Limit::Irradiance(limit) => c.bound(p.point.position, limit) / MAX_TO_MEAN,
-        };
-        let clamped = if bound > 0.0 && bound.is_finite() { c.max_of_lobes() / bound } else { 0.0 };
+        let clamped = if p.bound > 0.0 && p.bound.is_finite() { c.max_of_lobes() / p.bound } else { 0.0 };
         clamped.max(if p.direct { c.max_near_sq } else { 0.0 })
     };
     let valid = (0..points.len()).filter(|&l| reach_sq(&points[l]) > 0.0).fold(0u16, |mask, l| mask | 1 << l);
@@ -91,12 +85,7 @@ fn weighed(
     point: &ClampedPoint,
 ) -> Option<NearSurface> {
     let distance = hit.t;
-    let bound = match point.limit {
-        Limit::Geometry(bound) => bound,
-        // Virtual lights around the surface met determine the bound.
-        Limit::Irradiance(limit) => c.bound(point.point.position + direction * distance, limit),
-    };
-    let bound = if bound > 0.0 { bound } else { f32::INFINITY };
+    let bound = if point.bound > 0.0 { point.bound } else { f32::INFINITY };
     let dist_sq = distance * distance;
     let lit_sq = if point.direct { c.lights.near_sq[hit.geometry as usize] } else { 0.0 };
     // An upper bound of G, before the surface is looked up.
@@ -107,7 +96,7 @@ fn weighed(
     let surface = world.surface(hit);
     // Virtual lights radiate by the cosine to the geometric normal.
     let geometry = cos * surface.normal.dot(direction).abs() / dist_sq;
-    let lack = Lack { out: -direction, kept: bound / geometry, limit: point.limit, by_lobes: false };
+    let lack = Lack { out: -direction, kept: bound / geometry, by_lobes: false };
     let mut near = NearSurface {
         surface,
         lack,
@@ -135,9 +124,7 @@ fn weighed(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::lights::{
-        Family, Intensities, IntensitySamples, LightTrees, Lights, Origin, Profiles, Vpl, VplKind, VplSet,
-    };
+    use crate::lights::{Family, LightTrees, Lights};
     use base::progress::Control;
     use std::f32::consts::PI;
     use world::World;
@@ -147,7 +134,7 @@ mod tests {
     const RADIANCE: f32 = 3.0;
     /// Height of the ceiling over the point.
     const HEIGHT: f32 = 0.5;
-    const NONE: Limit = Limit::Geometry(f32::INFINITY);
+    const NONE: f32 = f32::INFINITY;
 
     /// A wide ceiling that shines down, and nothing else.
     fn ceiling() -> World {
@@ -160,27 +147,20 @@ mod tests {
     }
 
     /// Estimates of the reflected and of the emitted light that a point below the ceiling lacks, by many rays.
-    fn lacking(limit: Limit, intensities: Option<&Intensities>, near_sq: f32) -> [f32; 2] {
-        estimates(limit, intensities, near_sq, 4096, 0)
+    fn lacking(bound: f32, near_sq: f32) -> [f32; 2] {
+        estimates(bound, near_sq, 4096, 0)
     }
 
     /// Estimates by π/N Σ over `count` rays of a seed.
-    fn estimates(
-        limit: Limit,
-        intensities: Option<&Intensities>,
-        near_sq: f32,
-        count: u32,
-        seed: u32,
-    ) -> [f32; 2] {
+    fn estimates(bound: f32, near_sq: f32, count: u32, seed: u32) -> [f32; 2] {
         let world = ceiling();
         let trees = LightTrees::build(&[], Vec::new(), world.diagonal, Family::default(), &Control::new());
-        let intensities = intensities.cloned();
-        let diagonal = world.diagonal;
-        let lights = Lights { trees, near_sq: vec![near_sq], intensities, diagonal, seed, vpls: 0, rays: 0 };
+        let (diagonal, near) = (world.diagonal, vec![near_sq]);
+        let lights = Lights { trees, near_sq: near, intensities: None, diagonal, seed, vpls: 0, rays: 0 };
         let c = Compensation::new(&world, &lights);
         let point = SurfacePoint { position: Vec3::ZERO, normal: Vec3::Z, geometric_normal: Vec3::Z };
         let mut sums = [0.0; 2];
-        let clamped = ClampedPoint { point, limit, direct: near_sq > 0.0 };
+        let clamped = ClampedPoint { point, bound, direct: near_sq > 0.0, edges: u16::MAX };
         trace(&c, &[clamped], count, |_, near| {
             sums[0] += luminance(near.weight);
             sums[1] += luminance(near.emitted);
@@ -195,19 +175,19 @@ mod tests {
         for root in [0.1f32, 0.4, 0.8] {
             let bound = (root / HEIGHT).powi(2);
             let expected = ALBEDO * (1.0 - root).powi(2);
-            let [reflected, emitted] = lacking(Limit::Geometry(bound), None, 0.0);
+            let [reflected, emitted] = lacking(bound, 0.0);
             assert!((reflected - expected).abs() < 0.01 * ALBEDO, "{root}: {reflected} for {expected}");
             assert_eq!(emitted, 0.0);
         }
         // Nothing lies as near as b^(-1/2).
-        assert_eq!(lacking(Limit::Geometry(1.01 / (HEIGHT * HEIGHT)), None, 0.0), [0.0; 2]);
+        assert_eq!(lacking(1.01 / (HEIGHT * HEIGHT), 0.0), [0.0; 2]);
     }
 
     #[test]
     fn errors_of_few_directions_average_out_over_seeds() {
         const SEEDS: u32 = 256;
         let root = 0.4f32;
-        let by = |seed| estimates(Limit::Geometry((root / HEIGHT).powi(2)), None, 0.0, 4, seed)[0];
+        let by = |seed| estimates((root / HEIGHT).powi(2), 0.0, 4, seed)[0];
         let expected = ALBEDO * (1.0 - root).powi(2);
         let errors: Vec<f32> = (0..SEEDS).map(|seed| by(seed) / expected - 1.0).collect();
         let mean = errors.iter().sum::<f32>() / SEEDS as f32;
@@ -215,36 +195,15 @@ mod tests {
         assert!(rms > 0.02 && mean.abs() < 4.0 * rms / (SEEDS as f32).sqrt(), "{mean} of {rms}");
     }
 
-    /// Virtual lights at the point are brighter, or darker, than those of the ceiling.
-    #[test]
-    fn limits_of_irradiance_are_for_the_virtual_lights_of_the_surface_met() {
-        const LIMIT: f32 = 1.0;
-        for around in [0.5, 1.0, 4.0] {
-            let mut set = VplSet::new(VplKind::Oriented, Origin::Indirect);
-            let root = 0.4f32;
-            let of_ceiling = LIMIT / (root / HEIGHT).powi(2);
-            for i in 0..1 << 14 {
-                let [x, y] = [i % 128, i / 128].map(|i| (i as f32 - 63.5) * 0.02);
-                set.push(Vpl::oriented(Vec3::new(x, y, HEIGHT), Vec3::NEG_Z), Rgb::splat(of_ceiling));
-                set.push(Vpl::oriented(Vec3::new(x, y, 0.0), Vec3::Z), Rgb::splat(of_ceiling * around));
-            }
-            let intensities = Intensities::new(&IntensitySamples::new(&[set], &Profiles::default()))
-                .expect("there are lights");
-            let expected = ALBEDO * (1.0 - root).powi(2);
-            let [reflected, _] = lacking(Limit::Irradiance(LIMIT), Some(&intensities), 0.0);
-            assert!((reflected - expected).abs() < 0.02 * ALBEDO, "{around}: {reflected} for {expected}");
-        }
-    }
-
     /// With r² = h²/cos²θ the mean of max(0, 1 - r²/A) is 1 - a + a ln a, a = h²/A.
     #[test]
     fn light_from_emitters_nearer_than_their_patches_comes_back() {
         for a in [0.05f32, 0.3, 0.9] {
             let expected = PI * RADIANCE * (1.0 - a + a * a.ln());
-            let [reflected, emitted] = lacking(NONE, None, HEIGHT * HEIGHT / a);
+            let [reflected, emitted] = lacking(NONE, HEIGHT * HEIGHT / a);
             assert!((emitted - expected).abs() < 0.01 * PI * RADIANCE, "{a}: {emitted} for {expected}");
             assert_eq!(reflected, 0.0);
         }
-        assert_eq!(lacking(NONE, None, 0.99 * HEIGHT * HEIGHT), [0.0; 2]);
+        assert_eq!(lacking(NONE, 0.99 * HEIGHT * HEIGHT), [0.0; 2]);
     }
 }

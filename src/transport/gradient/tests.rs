@@ -241,7 +241,8 @@ fn virtual_lights_arrive_as_the_lightcut_counts_them() {
     let profiles = Profiles { spots: vec![spot], lobes: vec![lobe] };
     let at = |vpl: &Vpl, kind, x| Incidence::of_vpl(&frame, x, vpl, kind, &profiles, 1e-12);
     let trees = LightTrees::build(&[], profiles.clone(), 1.0, Family::default(), &Control::new());
-    let transfer = crate::lightcut::Transfer { trees: &trees, min_dist_sq: 1e-12, patches: false };
+    let transfer =
+        crate::lightcut::Transfer { min_dist_sq: 1e-12, ..crate::lightcut::Transfer::new(&trees, 1.0) };
     for (vpl, kind) in [
         (Vpl::oriented(light, Vec3::new(0.1, 0.2, -1.0).normalize()), VplKind::Oriented),
         (Vpl::omni(light), VplKind::Omni),

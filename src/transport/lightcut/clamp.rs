@@ -4,9 +4,7 @@
 //! Deviations: in the total, no single indirect leaf counts for more than a quarter ([`frozen_luminance`]). Otherwise a
 //! VPL close to the receiver would set its own limit, and hide the errors of all others while the cut is refined.
 
-use super::CutCounts;
-use crate::lights::{LightNode, LightTrees, Origin};
-use base::math::{Rgb, luminance};
+use crate::lights::{LightNode, Origin};
 
 /// Maximum share of a single indirect leaf in the total luminance that other clusters are compared with.
 pub(super) const DOMINANT: f32 = 0.25;
@@ -15,7 +13,7 @@ pub(super) const DOMINANT: f32 = 0.25;
 pub(super) const DOMINANT_TO_REST: f32 = DOMINANT / (1.0 - DOMINANT);
 
 /// Maximum number of steps towards the frozen luminance of a cut.
-pub(super) const MAX_STEPS: u32 = 12;
+pub const MAX_STEPS: u32 = 12;
 
 /// True for an indirect leaf; only indirect leaves are clamped.
 #[inline]
@@ -40,51 +38,6 @@ pub fn frozen_luminance(unlimited: f32, max_steps: u32, mut limited: impl FnMut(
         frozen = next;
     }
     frozen
-}
-
-/// Light that one point gathers from a cut, before weak singularities are clamped.
-pub(super) struct Unclamped<'a, I> {
-    pub trees: &'a LightTrees,
-    /// Nodes and their contributions.
-    pub contributions: I,
-    /// Further light, which is not clamped.
-    pub strong: Rgb,
-    /// Sum of contributions and further light.
-    pub sum: Rgb,
-    /// Luminance of other light that the point reflects.
-    pub baseline: f32,
-}
-
-impl<I: Iterator<Item = (u32, Rgb)> + Clone> Unclamped<'_, I> {
-    /// Returns the sum in which no weak singularity has more than the share `clamp` of the frozen luminance, and the
-    /// luminance of that share.
-    pub fn clamped(&self, clamp: f32, counts: &mut CutCounts) -> (Rgb, f32) {
-        let unclamped = luminance(self.sum) + self.baseline;
-        let frozen = frozen_luminance(unclamped, MAX_STEPS, |frozen| {
-            luminance(self.limited(DOMINANT * frozen).0) + self.baseline
-        });
-        let limit = clamp * frozen;
-        let (sum, clamped) = self.limited(limit);
-        counts.clamped += clamped;
-        counts.lost += f64::from(luminance(self.sum) - luminance(sum));
-        (sum, limit)
-    }
-
-    /// Returns the sum with the luminance of weak singularities limited, and the number of limited ones.
-    fn limited(&self, limit: f32) -> (Rgb, u64) {
-        let (sum, clamped) = self.contributions.clone().fold(
-            (self.strong.as_dvec3(), 0),
-            |(sum, clamped), (node, contribution)| {
-                let y = luminance(contribution);
-                if y > limit && is_weak(&self.trees.nodes[node as usize]) {
-                    (sum + (contribution * (limit / y)).as_dvec3(), clamped + 1)
-                } else {
-                    (sum + contribution.as_dvec3(), clamped)
-                }
-            },
-        );
-        (sum.as_vec3(), clamped)
-    }
 }
 
 #[cfg(test)]

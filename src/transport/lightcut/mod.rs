@@ -30,12 +30,13 @@ mod tests;
 mod transfer;
 mod visibility;
 
-pub use clamp::{frozen_luminance, is_weak};
+pub use clamp::{MAX_STEPS, frozen_luminance};
 pub use coherence::{CoherenceLimit, OrientedPoint, group_coherent, group_compact};
 #[cfg(test)]
 pub use exhaustive::gather_all;
 pub use packet::{
-    Lightcut, PacketCluster, PacketCut, PacketSum, ReceiverPacket, SampledCut, SampledSettings, Samples,
+    BRIGHTER, Clamps, Lightcut, PacketCluster, PacketCut, PacketSum, ReceiverPacket, SampledCut,
+    SampledSettings, Samples,
 };
 pub use receiver::Receiver;
 pub use reconstruction::ReconstructionCut;

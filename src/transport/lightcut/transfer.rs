@@ -4,8 +4,9 @@
 //! Units: values per unit intensity, before visibility.
 
 use super::Receiver;
-use crate::lights::{LightTrees, Lights, Vpl, VplKind, min_dist_sq, near_sq_of_size};
+use crate::lights::{Intensities, LightTrees, Lights, Vpl, VplKind, min_dist_sq, near_sq_of_size};
 use base::math::{Lane, Rgb, V3};
+use glam::Vec3;
 
 /// Transfer from all VPLs of a scene.
 #[derive(Clone, Copy, Debug)]
@@ -17,18 +18,27 @@ pub struct Transfer<'a> {
     /// True if VPLs on area lights divide by no less than the area that they represent. A closer point sees more of the
     /// light than one VPL can represent, and short rays find the rest (see [`crate::bias_compensation`]).
     pub patches: bool,
+    /// Intensities that bound geometry terms, whose rest short rays find; `None` if geometry terms are not limited.
+    pub intensities: Option<&'a Intensities>,
 }
 
 impl<'a> Transfer<'a> {
     /// Creates the transfer from the VPLs of `trees` in a scene of this `diagonal`.
     pub fn new(trees: &'a LightTrees, diagonal: f32) -> Transfer<'a> {
-        Transfer { trees, min_dist_sq: min_dist_sq(diagonal), patches: false }
+        Transfer { trees, min_dist_sq: min_dist_sq(diagonal), patches: false, intensities: None }
     }
 
-    /// Creates the transfer from the VPLs of a scene. With `patches`, VPLs on area lights divide by no less than their
-    /// area.
-    pub fn of(lights: &Lights, patches: bool) -> Transfer<'_> {
-        Transfer { patches, ..Transfer::new(&lights.trees, lights.diagonal) }
+    /// Creates the transfer from the VPLs of a scene. If `compensated`, short rays find the light of near VPLs.
+    pub fn of(lights: &Lights, compensated: bool) -> Transfer<'_> {
+        let intensities = lights.intensities.as_ref().filter(|_| compensated);
+        Transfer { patches: compensated, intensities, ..Transfer::new(&lights.trees, lights.diagonal) }
+    }
+
+    /// Returns the bound of the geometry term at which a VPL of the mean intensity around a point gives it the
+    /// irradiance `limit`; infinite if geometry terms are not limited.
+    pub fn bound(&self, x: Vec3, limit: f32) -> f32 {
+        let intensity = self.intensities.map_or(0.0, |intensities| intensities.around(x));
+        if intensity > 0.0 { limit / intensity } else { f32::INFINITY }
     }
 
     /// Minimum squared distance that the geometry term of a VPL divides by.
@@ -63,6 +73,13 @@ impl<'a> Transfer<'a> {
             },
         };
         (wi, emitted * inverse.sq().min(L::from(1.0 / self.near_sq(vpl, kind))))
+    }
+
+    /// Returns the geometry term of a VPL: the irradiance per unit intensity if it is visible.
+    #[inline(always)]
+    pub(super) fn geometry_term<L: Lane>(&self, x: V3<L>, normal: V3<L>, vpl: &Vpl, kind: VplKind) -> L {
+        let (wi, irradiance) = self.incident(x, vpl, kind);
+        wi.dot(normal).positive() * irradiance
     }
 
     /// Contribution of a visible VPL of unit intensity.

@@ -9,8 +9,7 @@
 
 use super::candidate::Candidate;
 use super::cells::CellLimits;
-use super::clamps::Clamps;
-use super::compensate::{self, Cutter};
+use super::compensate;
 use super::footprint::{Footprint, FootprintLimits};
 use super::gather::{GatheredLayer, GatheredLayer16};
 use super::lit_cluster::{Arriving16, RecordPoints};
@@ -22,6 +21,7 @@ use super::record::{Diagnostics, Record};
 use super::series::SeriesGatherer;
 use super::settings::{CacheSettings, Footprints};
 use super::source::{LightcutSource, RecordSource};
+use crate::bias_compensation::points::Compensator;
 use crate::eye::edge_class;
 use crate::hsh::Radiance;
 use crate::lightcut::{CutCounts, CutSettings, Lightcut, OrientedPoint, ReceiverPacket, group_compact};
@@ -133,6 +133,7 @@ struct RecordWorkspace<'w> {
     cut: Lightcut,
     points: ReceiverPacket<'static>,
     series: SeriesGatherer,
+    compensator: Compensator,
     /// Light of each cluster of the cut.
     arriving: Vec<Arriving16>,
 }
@@ -144,6 +145,7 @@ impl<'w> RecordWorkspace<'w> {
             cut: Lightcut::new(),
             points: ReceiverPacket::new(),
             series: SeriesGatherer::default(),
+            compensator: Compensator::default(),
             arriving: Vec::new(),
         }
     }
@@ -153,9 +155,9 @@ impl<'w> RecordWorkspace<'w> {
         self.cut.counts = CutCounts::default();
         let mut light = self.gather(s, group);
         if let Some(c) = &s.context.compensation {
-            let cutter = Cutter { cut: &mut self.cut, points: &mut self.points };
             let mut gathered: Vec<_> = light.iter_mut().map(|light| &mut light.layers).collect();
-            compensate::add(c, s, cutter, group, &mut gathered);
+            compensate::add(c, &mut self.compensator, group, &mut gathered);
+            self.cut.counts += self.compensator.take_counts().cuts;
         }
         let mut records = Vec::with_capacity(2 * group.len());
         for (candidate, mut light) in group.iter().zip(light) {
@@ -173,7 +175,7 @@ impl<'w> RecordWorkspace<'w> {
     /// Gathers the light at the points of `group` by one cut. Threads that have no group help with the probe rays and
     /// sums.
     fn gather(&mut self, s: &LightcutSource, group: &[Candidate]) -> Vec<GatheredLight> {
-        let RecordWorkspace { shadows, cut, points: receivers, series, arriving } = self;
+        let RecordWorkspace { shadows, cut, points: receivers, series, arriving, .. } = self;
         let (world, transfer) = (s.context.world, &s.context.transfer);
         receivers.set(group.iter().map(Candidate::receiver));
         let receivers = &*receivers;
@@ -189,18 +191,18 @@ impl<'w> RecordWorkspace<'w> {
                 || OcclusionHessian::at_points(world, &places, s.settings.probe_rays),
             ),
         };
-        let clamps = Clamps::new(&s.context.compensation, &cut.sum.limits, group);
+        let clamps = &cut.sum.clamps;
         let points = RecordPoints::new(group, &world.materials);
-        let lit = LitCut::new(transfer, cut.clusters, &points, &clamps, arriving);
+        let lit = LitCut::new(transfer, cut.clusters, &points, receivers, clamps, arriving);
         let mut layers = lit.layers(&points, &mut hessians);
         if let Some(log) = log {
-            lit.add_hidden(&log.sorted(), receivers, &clamps, &mut layers);
+            lit.add_hidden(&log.sorted(), receivers, clamps, &mut layers);
         }
         let mut hessians = hessians.into_iter();
         let mut light = Vec::with_capacity(group.len());
         for (lane, candidate) in group.iter().enumerate() {
             let clusters = cut.clusters.len() as u32;
-            let layer = |layer: &GatheredLayer16| layer.layer(&points, lane, clusters, clamps.bound(lane));
+            let layer = |layer: &GatheredLayer16| layer.layer(&points, lane, clusters, clamps.bounds[lane]);
             let layers = layers.as_ref().map(layer);
             let series = lit.series(series, candidate, lane);
             light.push(GatheredLight { layers, series, hessian: hessians.next() });

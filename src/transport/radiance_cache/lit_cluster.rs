@@ -1,8 +1,7 @@
 //! Clusters of a cut, and their light at the points of up to sixteen records.
 
 use super::candidate::Candidate;
-use super::clamps::Clamps;
-use crate::lightcut::{Transfer, is_weak};
+use crate::lightcut::Transfer;
 use crate::lights::{LightNode, LobeProfile, Vpl, VplKind};
 use base::math::{F32x16, Frame, LANES, Vec3x16, lanes_in};
 use glam::Vec3;
@@ -25,13 +24,6 @@ impl<'t> LitCluster<'t> {
     pub fn new(transfer: &'t Transfer<'t>, node: u32) -> LitCluster<'t> {
         let node = &transfer.trees.nodes[node as usize];
         LitCluster { transfer, node, vpl: &transfer.trees.vpls[node.representative()] }
-    }
-
-    /// Returns the share of the contribution to each point that clamping retains. `responses` is the irradiance of the
-    /// representative at unit intensity.
-    #[inline]
-    pub fn retained(&self, clamps: &Clamps, responses: &Vec3x16) -> F32x16 {
-        if is_weak(self.node) { clamps.retained(self.node.intensity, responses) } else { [1.0; LANES] }
     }
 
     /// Returns the lobe of the representative, if it radiates by one.

@@ -4,14 +4,13 @@
 //! series are sums over that light.
 
 use super::candidate::Candidate;
-use super::clamps::Clamps;
 use super::gather::GatheredLayer16;
 use super::lit_cluster::{Arriving16, LitCluster, RecordPoints};
 use super::occluder_distance::OccluderDistances;
 use super::occlusion_hessian::OcclusionHessian;
 use super::series::SeriesGatherer;
 use crate::hsh::Radiance;
-use crate::lightcut::{PacketCluster, ReceiverPacket, Transfer};
+use crate::lightcut::{Clamps, PacketCluster, ReceiverPacket, Transfer};
 use crate::lights::{DirectIndirect, Origin};
 use base::math::{Rgb, lanes_in, luminance};
 use rayon::prelude::*;
@@ -28,17 +27,19 @@ pub struct LitCut<'a> {
 }
 
 impl<'a> LitCut<'a> {
-    /// Computes the light of `clusters` at the points, clamped by `clamps`. `arriving` is the buffer for it.
+    /// Computes the light of `clusters` at the points, clamped by the `clamps` of the receivers there. `arriving` is the buffer for it.
     pub fn new(
         transfer: &'a Transfer<'a>,
         clusters: &'a [PacketCluster],
         points: &RecordPoints,
+        receivers: &ReceiverPacket,
         clamps: &Clamps,
         arriving: &'a mut Vec<Arriving16>,
     ) -> LitCut<'a> {
         let light = |PacketCluster { node, responses }: &PacketCluster| {
             let cluster = LitCluster::new(transfer, *node);
-            points.arriving(&cluster, responses, cluster.retained(clamps, responses))
+            let retained = clamps.retained(transfer, receivers, cluster.node, responses);
+            points.arriving(&cluster, responses, retained)
         };
         clusters.par_iter().with_min_len(MIN_CLUSTERS).map(light).collect_into_vec(arriving);
         LitCut { transfer, clusters, arriving }
@@ -90,7 +91,7 @@ impl<'a> LitCut<'a> {
         for PacketCluster { node, responses } in self.clusters {
             let cluster = LitCluster::new(self.transfer, *node);
             let (lit, unshadowed) = self.transfer.unshadowed16(points, cluster.vpl, cluster.node.kind());
-            let retained = cluster.retained(clamps, &unshadowed);
+            let retained = clamps.retained(self.transfer, points, cluster.node, &unshadowed);
             let y = luminance(cluster.node.intensity);
             // A pane may take one colour of light that arrives.
             for lane in lanes_in(lit).filter(|&lane| responses.get(lane) == Rgb::ZERO) {

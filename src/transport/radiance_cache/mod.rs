@@ -13,8 +13,8 @@
 //! Computation:
 //! - [`candidate`]: points where records are needed; [`source`]: what computes records there;
 //! - [`compute`]: records by lightcuts that neighbours share; [`lit_cluster`], [`lit_cut`]: the light of a cut at the
-//!   points of records; [`gather`], [`series`]: the sums over it; [`clamps`]: limits of virtual lights;
-//! - [`compensate`]: light lost to these limits, recovered by short rays;
+//!   points of records; [`gather`], [`series`]: the sums over it;
+//! - [`compensate`]: light lost to clamping, recovered by short rays;
 //! - [`occluder_distance`]: distances of occluders, which bound footprints;
 //! - [`probe`], [`edges`], [`occlusion_hessian`]: surfaces around a record, and the change of its light due to the
 //!   motion of occluders' edges.
@@ -28,7 +28,6 @@
 pub mod adapt;
 pub mod candidate;
 pub mod cells;
-pub mod clamps;
 pub mod compensate;
 pub mod compute;
 pub mod edges;

@@ -156,7 +156,7 @@ impl<'w> Gatherers<'w> {
         for (lane, task) in tasks.iter().enumerate() {
             self.receivers.set([task.receiver(points)]);
             let own = self.packet.gather(&c.transfer, rays, &self.receivers, cut);
-            (sum.radiance[lane], sum.limits[lane]) = (own.sum.radiance[0], own.sum.limits[0]);
+            (sum.radiance[lane], sum.clamps.bounds[lane]) = (own.sum.radiance[0], own.sum.clamps.bounds[0]);
             clusters[lane] = own.clusters.len() as u32;
         }
         if let Some(c) = &c.compensation {

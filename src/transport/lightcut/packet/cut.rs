@@ -1,5 +1,6 @@
 //! The cut of a packet, the light gathered from it, and the workspace that holds both.
 
+use super::Clamps;
 use crate::lightcut::CutCounts;
 use base::math::{F32x16, LANES, Rgb, Vec3x16};
 
@@ -26,13 +27,13 @@ pub struct Unshadowed {
 pub struct PacketSum {
     /// Radiance that each receiver reflects, or irradiance; 0 in lanes without a receiver.
     pub radiance: [Rgb; LANES],
-    /// Luminance above which indirect leaves were clamped; infinite without clamping.
-    pub limits: F32x16,
+    /// Limits of indirect leaves.
+    pub clamps: Clamps,
 }
 
 impl Default for PacketSum {
     fn default() -> PacketSum {
-        PacketSum { radiance: [Rgb::ZERO; LANES], limits: [f32::INFINITY; LANES] }
+        PacketSum { radiance: [Rgb::ZERO; LANES], clamps: Clamps::default() }
     }
 }
 

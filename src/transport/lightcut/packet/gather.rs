@@ -25,7 +25,7 @@ impl Lightcut {
         self.counts.clusters += count * self.clusters.len() as u64;
         self.counts.capped += count * u64::from(capped);
         let light = PacketLight { clusters: &self.clusters, strong: Vec3x16::ZERO };
-        let sum = light.sum(transfer.trees, receivers, settings.clamp, &mut self.counts);
+        let sum = light.sum(transfer, receivers, settings.clamp, &mut self.counts);
         PacketCut { sum, clusters: &self.clusters, unshadowed: &self.unshadowed }
     }
 }

@@ -1,5 +1,5 @@
-//! One cut for a packet of up to sixteen neighbouring points, with one vector lane per point. A packet may hold a single
-//! point.
+//! One cut for a packet of up to sixteen neighbouring points, with one vector lane per point. A packet may hold a
+//! single point.
 //!
 //! Papers: Walter et al., *Lightcuts*, 2005, section 3; Herzog et al. 2009, section 3 (one threshold for all trees,
 //! relative to their common total) and Eq. 13 (weak singularities, see [`super::clamp`]).
@@ -20,6 +20,7 @@
 //! fifteen lit points to its cap.
 
 mod bound;
+mod clamps;
 mod cluster_box;
 mod cut;
 mod gather;
@@ -33,8 +34,10 @@ mod sum;
 mod tests;
 mod transfer;
 
+pub use clamps::{BRIGHTER, Clamps};
 pub use cut::{Lightcut, PacketCluster, PacketCut, PacketSum, Unshadowed};
 pub use receivers::ReceiverPacket;
 pub(super) use refine::halved;
 pub use sampled::{SampledCut, SampledSettings, Samples};
-pub(super) use sum::{PacketLight, luminances};
+pub(super) use sum::PacketLight;
+pub(super) use transfer::luminances;

@@ -175,7 +175,7 @@ fn lanes_clamp_as_single_points_do() {
     for share in (0..200).map(|n| 0.01 * n as f32) {
         let light = PacketLight { clusters, strong: Vec3x16::splat(Rgb::splat(-share * whole)) };
         let PacketSum { radiance, .. } =
-            light.sum(&trees, &points, settings.clamp, &mut CutCounts::default());
+            light.sum(&transfer, &points, settings.clamp, &mut CutCounts::default());
         assert!(radiance.iter().all(|r| r.is_finite()), "{share}: {radiance:?}");
     }
     assert!(lightcut.counts.clamped > 0);

@@ -3,7 +3,7 @@
 use super::ReceiverPacket;
 use crate::lightcut::Transfer;
 use crate::lights::{Vpl, VplKind};
-use base::math::{Lane, Mask16, V3, Vec3x16, lanes_in};
+use base::math::{F32x16, LANES, LUMINANCE, Lane, Mask16, Rgb, V3, Vec3x16, lanes_in};
 
 impl Transfer<'_> {
     /// Returns the lanes that a visible VPL of unit intensity lights, and its contributions.
@@ -42,4 +42,16 @@ impl Transfer<'_> {
         let (wi, irradiance) = self.incident(receivers.position.load(), vpl, kind);
         wi.times(irradiance).keep(wi.dot(receivers.frame.normal().load()).is_positive()).into()
     }
+}
+
+/// Returns the luminance of each lane's colour times `intensity`.
+#[inline]
+pub(in crate::lightcut) fn luminances(intensity: Rgb, responses: &Vec3x16) -> F32x16 {
+    let (w, r) = (intensity * LUMINANCE, responses);
+    // Closures might not be inlined here, so this is a loop.
+    let mut luminances = [0.0; LANES];
+    for l in 0..LANES {
+        luminances[l] = w.x * r.x[l] + w.y * r.y[l] + w.z * r.z[l];
+    }
+    luminances
 }

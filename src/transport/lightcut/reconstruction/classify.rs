@@ -33,7 +33,7 @@ const BRIGHTER: f32 = 2.0;
 pub(super) const MAX_CORRECTION: f32 = 0.5;
 const MIN_LUMINANCE: f32 = 1.0 / 16.0;
 
-/// Minimum luminance of a weak singularity that is evaluated, relative to the limit of clamping.
+/// Minimum contribution of a weak singularity that is evaluated, relative to the limits of clamping.
 const NEARLY_CLAMPED: f32 = 0.5;
 
 /// Minimum relative loss of light that counts as attenuation by thin sheets; less is rounding.
@@ -133,8 +133,12 @@ impl<'a, 't, 'm> Anchors<'a, 't, 'm> {
         let disputed = at.seen != at.lit || !at.sufficient || large || at.attenuated;
         let brighter = BRIGHTER * lanes_in(at.lit).map(|l| at.luminances[l]).fold(0.0, f32::max);
         let evaluated = || evaluated(if disputed { 0.0 } else { brighter }, brighter.max(min_split));
-        let nearly_clamped = |l: usize| at.luminances[l] > NEARLY_CLAMPED * self.sum.limits[l];
-        if large || at.attenuated || is_weak(node) && lanes_in(at.lit).any(nearly_clamped) {
+        let nearly_clamped = || {
+            let responses = &unshadowed.responses;
+            let strain = self.sum.clamps.strain(self.transfer, self.receivers, node, responses).to_array();
+            lanes_in(at.lit).any(|l| strain[l] > NEARLY_CLAMPED)
+        };
+        if large || at.attenuated || is_weak(node) && nearly_clamped() {
             return evaluated();
         }
         let Some((fit, values)) = interpolant.fit(self.transfer, self.receivers, cluster, at.seen) else {

@@ -116,7 +116,7 @@ impl ReconstructionCut {
         let count = receivers.len() as u64;
         self.counts.cuts += count;
         self.counts.clusters += count * self.size as u64;
-        let mut sum = light.sum(transfer.trees, receivers, self.settings.clamp, &mut self.counts);
+        let mut sum = light.sum(transfer, receivers, self.settings.clamp, &mut self.counts);
         sum.radiance.iter_mut().for_each(|radiance| *radiance = radiance.max(Rgb::ZERO));
         sum
     }

@@ -18,11 +18,11 @@
 mod tests;
 
 use super::refine::PacketRefinement;
-use super::{Lightcut, PacketSum, ReceiverPacket, luminances};
+use super::{Clamps, Lightcut, PacketSum, ReceiverPacket, luminances};
 use crate::lightcut::clamp::{DOMINANT, MAX_STEPS, frozen_luminance, is_weak};
 use crate::lightcut::{CutCounts, CutSettings, Transfer, Visibility, to_vpl};
 use crate::lights::LightNode;
-use base::math::{F32x16, LANES, Rgb, Vec3x16, first_lanes, lanes_in, luminance};
+use base::math::{F32x16, LANES, Rgb, V3, Vec3x16, first_lanes, lanes_in, luminance};
 use base::sampling::{hash, unit};
 use embree::{Ray, Rays16};
 
@@ -91,6 +91,8 @@ struct Sample {
     light: Rgb,
     /// Inverse of the density for samples of leaves that may be clamped; infinite for others.
     factor: f32,
+    /// Geometry term of a leaf that may be clamped; 0 for others.
+    geometry: f32,
 }
 
 /// Sample on its way from a cluster to a descendant.
@@ -114,6 +116,7 @@ struct Pending {
     rays: Rays16,
     light: Vec3x16,
     factors: F32x16,
+    geometries: F32x16,
     /// Maximum numbers of sheets that the samples' light passes (see [`crate::lightcut::Receiver::sheets`]).
     sheets: [Option<u32>; LANES],
     /// Lanes of the samples' points.
@@ -181,7 +184,11 @@ impl SampledCut {
         self.sample(transfer, visibility, receivers, &mut cursors);
         let mut sum = PacketSum::default();
         for lane in lanes_in(receivers.valid) {
-            (sum.radiance[lane], sum.limits[lane]) = self.clamped(lane, receivers.baseline[lane], cut.clamp);
+            sum.radiance[lane] = self.visible[lane].iter().map(|sample| sample.light).sum();
+            self.counts.luminance += f64::from(luminance(sum.radiance[lane]));
+        }
+        if let Some(clamp) = cut.clamp {
+            self.clamp(transfer, receivers, clamp, &mut sum);
         }
         Some(sum)
     }
@@ -232,8 +239,15 @@ impl SampledCut {
                     continue;
                 }
                 let ray = to_vpl(receiver.position(), receiver.geometric_normal(), vpl, node.kind());
-                let factor = if is_weak(node) { density.recip() } else { f32::INFINITY };
-                let sample = Sample { light: response * (node.intensity / density), factor };
+                let (factor, geometry) = match is_weak(node) {
+                    true => {
+                        let (x, normal) = receiver.place();
+                        let (x, normal) = (V3::<f32>::splat(x), V3::splat(normal));
+                        (density.recip(), transfer.geometry_term(x, normal, vpl, node.kind()))
+                    }
+                    false => (f32::INFINITY, 0.0),
+                };
+                let sample = Sample { light: response * (node.intensity / density), factor, geometry };
                 let (_, before) = trees.representative(node);
                 pending.sheets[pending.count] = receiver.sheets(before);
                 if pending.push(&ray, sample, lane) {
@@ -272,30 +286,30 @@ impl SampledCut {
         }
     }
 
-    /// Returns the sum of the visible samples of a lane, and the luminance to which weak singularities are limited: the
-    /// share `clamp` of all light.
-    fn clamped(&mut self, lane: usize, baseline: f32, clamp: Option<f32>) -> (Rgb, f32) {
-        let samples = &self.visible[lane];
-        let is_limited = |sample: &Sample, limit: f32| luminance(sample.light) > limit * sample.factor;
-        let limited = |limit: f32| -> Rgb {
-            let limited = |sample: &Sample| match is_limited(sample, limit) {
-                true => sample.light * (limit * sample.factor / luminance(sample.light)),
-                false => sample.light,
+    /// Limits weak singularities by the share `clamp` of the frozen luminance.
+    fn clamp(&mut self, transfer: &Transfer, receivers: &ReceiverPacket, clamp: f32, sum: &mut PacketSum) {
+        let mut shares = [f32::INFINITY; LANES];
+        for lane in lanes_in(receivers.valid) {
+            let baseline = receivers.baseline[lane];
+            let limited = |frozen: f32| -> f32 {
+                let limited =
+                    |sample: &Sample| luminance(sample.light).min(DOMINANT * frozen * sample.factor);
+                self.visible[lane].iter().map(limited).sum::<f32>() + baseline
             };
-            samples.iter().map(limited).sum()
-        };
-        let sum = limited(f32::INFINITY);
-        let total = luminance(sum);
-        self.counts.luminance += f64::from(total);
-        let Some(clamp) = clamp else { return (sum, f32::INFINITY) };
-        let frozen = frozen_luminance(total + baseline, MAX_STEPS, |frozen| {
-            luminance(limited(DOMINANT * frozen)) + baseline
-        });
-        let limit = clamp * frozen;
-        let clamped = limited(limit);
-        self.counts.clamped += samples.iter().filter(|sample| is_limited(sample, limit)).count() as u64;
-        self.counts.lost += f64::from(total - luminance(clamped));
-        (clamped, limit)
+            shares[lane] =
+                clamp * frozen_luminance(luminance(sum.radiance[lane]) + baseline, MAX_STEPS, limited);
+        }
+        sum.clamps = Clamps::new(transfer, receivers, &shares);
+        for lane in lanes_in(receivers.valid) {
+            let mut clamped = Rgb::ZERO;
+            for Sample { light, factor, geometry } in &self.visible[lane] {
+                let retained = sum.clamps.retained_in(lane, *geometry, luminance(*light) / factor);
+                clamped += *light * retained;
+                self.counts.clamped += u64::from(retained < 1.0);
+            }
+            self.counts.lost += f64::from(luminance(sum.radiance[lane] - clamped));
+            sum.radiance[lane] = clamped;
+        }
     }
 }
 
@@ -306,6 +320,7 @@ impl Pending {
         self.rays.set(self.count, ray);
         self.light.set(self.count, sample.light);
         self.factors[self.count] = sample.factor;
+        self.geometries[self.count] = sample.geometry;
         self.points[self.count] = lane as u8;
         self.count += 1;
         self.count == LANES
@@ -327,7 +342,8 @@ impl Pending {
         let free = visibility.visible16(&self.rays, first_lanes(count), None);
         visibility.attenuate16(&self.rays, free, |i| self.sheets[i], &mut self.light);
         for i in lanes_in(free) {
-            let sample = Sample { light: self.light.get(i), factor: self.factors[i] };
+            let (factor, geometry) = (self.factors[i], self.geometries[i]);
+            let sample = Sample { light: self.light.get(i), factor, geometry };
             visible[usize::from(self.points[i])].push(sample);
         }
     }
