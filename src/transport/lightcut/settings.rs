@@ -16,8 +16,9 @@ settings! {
         /// Maximum contribution of one indirect virtual point light, relative to the luminance of the sample. 0
         /// disables clamping.
         ///
-        /// `None` leaves weak singularities unclamped. Shares below 0.001 are refused, since compensation restores the
-        /// light of single VPLs only, and clusters of that brightness are not refined.
+        /// If compensated, VPLs of the mean intensity around the point have this share where they are clamped (see
+        /// [`super::Clamps`]). `None` leaves weak singularities unclamped. Shares below 0.001 are refused, since
+        /// compensation restores the light of single VPLs only, and clusters of that brightness are not refined.
         clamp: Option<f32> = Some(0.02) => [.fraction().scaled(&UP).judged_by(JudgedBy::Light)];
         /// Origin of the light whose trees are cut; `None` for all trees.
         origin: Option<Origin> = None;

@@ -27,7 +27,8 @@ pub struct LitCut<'a> {
 }
 
 impl<'a> LitCut<'a> {
-    /// Computes the light of `clusters` at the points, clamped by the `clamps` of the receivers there. `arriving` is the buffer for it.
+    /// Computes the light of `clusters` at the points, clamped by the `clamps` of the `receivers` there. `arriving` is
+    /// the buffer for it.
     pub fn new(
         transfer: &'a Transfer<'a>,
         clusters: &'a [PacketCluster],
