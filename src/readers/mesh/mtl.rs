@@ -10,7 +10,7 @@ use super::mtl_statements::listed;
 use super::wavefront::{self, numbers, shown, split_word, statements, values, words};
 use crate::decode::srgb_to_linear;
 use crate::error::{Location, SceneError, Warning};
-use crate::statements::Fate;
+use crate::statements::{Fate, Statement};
 use base::math::Rgb;
 use glam::{DMat3, DVec3};
 use std::collections::BTreeMap;
@@ -64,6 +64,8 @@ pub(crate) struct ClassicMaterial {
     /// Maps by keyword. `map_bump` is `bump`.
     pub maps: BTreeMap<&'static str, MapStatement>,
     pub unmodelled: Vec<Unmodelled>,
+    /// Line of the last statement of each keyword.
+    lines: BTreeMap<&'static str, u32>,
 }
 
 /// Reads the MTL text `bytes`; `path` is for messages.
@@ -140,7 +142,13 @@ impl ClassicMaterial {
         content.transparency = content.transparency.map(|(share, _)| (share, 0));
         content.maps.values_mut().for_each(|map| map.line = 0);
         content.unmodelled.iter_mut().for_each(|lack| lack.line = 0);
+        content.lines.clear();
         content
+    }
+
+    /// Returns what the statements that are read give, without lines.
+    fn values(&self) -> ClassicMaterial {
+        ClassicMaterial { unmodelled: Vec::new(), ..self.content() }
     }
 
     fn new(name: &[u8], place: Location) -> ClassicMaterial {
@@ -161,6 +169,7 @@ impl ClassicMaterial {
             principled: BTreeMap::new(),
             maps: BTreeMap::new(),
             unmodelled: Vec::new(),
+            lines: BTreeMap::new(),
         }
     }
 
@@ -169,8 +178,28 @@ impl ClassicMaterial {
             self.lacks(format!("the unknown statement \"{}\"", shown(word)), "it is left out", line);
             return Ok(());
         };
+        let keyword = if statement.name == "map_bump" { "bump" } else { statement.name };
+        let Some(earlier) = self.lines.insert(keyword, line) else {
+            return self.read_listed((statement, keyword), rest, line);
+        };
+        let before = self.values();
+        self.read_listed((statement, keyword), rest, line)?;
+        if self.values() != before {
+            let what = format!("{keyword} twice, in line {earlier} and here,");
+            self.lacks(what, "the later one is used; leave one of them out", line);
+        }
+        Ok(())
+    }
+
+    /// Reads a statement by its keyword, which may be another spelling of it.
+    fn read_listed(
+        &mut self,
+        (statement, keyword): (&Statement, &'static str),
+        rest: &[u8],
+        line: u32,
+    ) -> Result<(), String> {
         let number = || finite::<1>(rest).map(|[v]| v as f32);
-        match (statement.fate, statement.name) {
+        match (statement.fate, keyword) {
             // The image of map_Ka decides.
             (Fate::Named, keyword) if keyword != "map_Ka" => {
                 self.lacks(keyword.to_owned(), statement.note, line);
@@ -196,7 +225,6 @@ impl ClassicMaterial {
                 self.principled.insert(keyword, number()?);
             }
             (_, keyword) if keyword.starts_with("map_") || matches!(keyword, "norm" | "bump") => {
-                let keyword = if keyword == "map_bump" { "bump" } else { keyword };
                 let text = encodings::text(rest.trim_ascii());
                 if !wavefront::name(rest).is_empty() {
                     self.maps.insert(keyword, MapStatement { text, line });
@@ -299,6 +327,29 @@ mod tests {
                 read(format!("newmtl a\n{bad}\n").as_bytes(), Path::new("t.mtl")).unwrap_err().to_string();
             assert!(message.starts_with("t.mtl:2:"), "{message}");
         }
+    }
+
+    #[test]
+    fn statements_given_twice_are_named_with_both_lines_if_they_differ() {
+        for (text, expected) in [
+            ("Kd 1 0 0\nNs 5\nKd 0 1 0", "4: Kd twice, in line 2 and here,"),
+            ("Ns 5\nNs 6", "3: Ns twice, in line 2 and here,"),
+            ("illum 2\nillum 1", "3: illum twice, in line 2 and here,"),
+            ("Pr .5\nPr .6", "3: Pr twice, in line 2 and here,"),
+            ("map_Kd a.png\nmap_kd b.png", "3: map_Kd twice, in line 2 and here,"),
+            ("bump a.png\nmap_Bump b.png", "3: bump twice, in line 2 and here,"),
+            ("bump a.png\nmap_bump a.png", ""),
+            ("d -halo .5\nd -halo .5", "2: d -halo; 3: d -halo"),
+            ("sharpness 1\nsharpness 2", "2: sharpness; 3: sharpness"),
+            ("Kd 1 0 0\nKd 1.0 0 0 # red\nillum 2\nillum 2", ""),
+            ("Kd 1 0 0\nnewmtl b\nKd 0 1 0", ""),
+        ] {
+            let materials = read_text(&format!("newmtl a\n{text}\n"));
+            let named: Vec<String> =
+                materials[0].unmodelled.iter().map(|u| format!("{}: {}", u.line, u.what)).collect();
+            assert_eq!(named.join("; "), expected, "{text}");
+        }
+        assert_eq!(read_text("newmtl a\nKd 1 0 0\nKd 0 1 0")[0].diffuse, Rgb::Y);
     }
 
     #[test]
