@@ -26,6 +26,7 @@ mod gltf;
 #[cfg(test)]
 mod instance_tests;
 mod instances;
+mod json_text;
 mod lacking_uvs;
 mod layers;
 mod lighting;

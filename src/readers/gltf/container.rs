@@ -4,6 +4,7 @@ use super::json;
 use super::statements::{self, Unread};
 use super::transform::Local;
 use crate::error::{Location, SceneError};
+use crate::json_text;
 use gltf_json::Root;
 use serde_json::Value;
 
@@ -29,8 +30,18 @@ impl<'a> Container<'a> {
 
     /// Parses the JSON of glTF 2.0.
     pub fn description(&self, place: &Location) -> Result<Description, SceneError> {
-        // Text that nests too deeply for this is read without repairs.
-        let mut value: Value = serde_json::from_slice(self.json).unwrap_or_default();
+        let located = |error: serde_json::Error| {
+            let place = match self.is_text && error.line() > 0 {
+                true => Location::line(&place.path, error.line() as u32),
+                false => place.clone(),
+            };
+            place.malformed(error.to_string())
+        };
+        let mut value = match json_text::parse(self.json) {
+            Err(error) if error.is_data() => return Err(located(error)),
+            // Text that nests too deeply for this is read without repairs.
+            parsed => parsed.unwrap_or_default(),
+        };
         let is_old = is_old(&value);
         let is_repaired = json::repair(&mut value);
         let unread = statements::unread(&value);
@@ -44,15 +55,9 @@ impl<'a> Container<'a> {
             true => serde_json::from_value(value),
             false => serde_json::from_slice(self.json),
         };
-        let root: Root = parsed.map_err(|error| {
-            if is_old {
-                return place.wrong("this is a file of glTF 1.0", CONVERT);
-            }
-            let place = match self.is_text && error.line() > 0 {
-                true => Location::line(&place.path, error.line() as u32),
-                false => place.clone(),
-            };
-            place.malformed(error.to_string())
+        let root: Root = parsed.map_err(|error| match is_old {
+            true => place.wrong("this is a file of glTF 1.0", CONVERT),
+            false => located(error),
         })?;
         check_version(&root, place)?;
         let local = |(i, node)| Local::of(node, nodes.get(i).unwrap_or(&Value::Null));

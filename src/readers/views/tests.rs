@@ -107,6 +107,7 @@ fn wrong_lists_are_errors_with_the_file_the_entry_and_a_remedy() {
         ("{ \"frames\": 3 }".to_owned(), "no list `frames`"),
         ("{ \"frames\": [] }".to_owned(), "no camera; add one"),
         ("{ \"frames\": [7] }".to_owned(), "frame 1 is no table"),
+        (frames("\"w\": 8,\n\"w\": 9,", ""), "the key \"w\" is twice in one object; remove one"),
         (frames("", ""), "frame 1: without w and h"),
         (frames("\"fl_x\": 50,", ""), "add w and h"),
         (frames("\"w\": 8, \"h\": 8,", ""), "no focal length"),

@@ -7,6 +7,7 @@ use super::statements::STATEMENTS;
 use crate::draft::{DraftCamera, DraftView};
 use crate::error::{Location, Log, SceneError};
 use crate::file::read_text;
+use crate::json_text;
 use crate::statements::{Fate, fate};
 use base::math::{right_of, unit};
 use glam::DVec3;
@@ -27,7 +28,7 @@ const SKEW: f64 = 1e-2;
 pub fn read(path: &Path, log: &mut Log) -> Result<Vec<Result<DraftView, SceneError>>, SceneError> {
     let place = Location::file(path);
     let (text, _) = read_text(path, &place)?;
-    let root: Value = serde_json::from_str(&python_numbers_quoted(&text)).map_err(|error| {
+    let root = json_text::parse(python_numbers_quoted(&text).as_bytes()).map_err(|error| {
         let line = u32::try_from(error.line()).unwrap_or(u32::MAX);
         Location::line(path, line).malformed(error.to_string())
     })?;

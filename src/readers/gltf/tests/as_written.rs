@@ -266,6 +266,10 @@ fn numbers_and_absent_members_are_read_as_exporters_write_them() {
     let wrong = "{ \"asset\": { \"version\": \"2.0\" },\n\"accessors\": [{\n\"count\": 4.5 }] }";
     let message = load_beside("m.gltf", &[("m.gltf", wrong.as_bytes())]).unwrap_err().to_string();
     assert!(message.contains("m.gltf:3: "), "{message}");
+    // A repaired file would lose one of two values of a key in silence.
+    let twice = "{ \"asset\": { \"version\": \"2.0\" }, \"scene\": 0.0,\n\"nodes\": [{ \"mesh\": 0,\n\"mesh\": 1 }] }";
+    let message = load_beside("m.gltf", &[("m.gltf", twice.as_bytes())]).unwrap_err().to_string();
+    assert!(message.contains("m.gltf:3: ") && message.contains("the key \"mesh\" is twice"), "{message}");
 }
 
 #[test]
