@@ -2,6 +2,7 @@
 
 use crate::kit::*;
 use crate::oracle::regions;
+use crate::presets::with_lights_over;
 use glam::Vec3;
 use lightsplat::film::Image;
 use lightsplat::math::{Rgb, luminance};
@@ -52,9 +53,10 @@ fn brushed_metal_lights_a_wall_where_paths_have_it() {
         let agrees = |settings: &dyn Renderer, most, what| {
             assert_as_by_paths(&exact, &image(&world, settings), most, what)
         };
-        agrees(&vpl::Settings { spp: 128, ..vpl::Settings::cache() }, 0.03, "cache");
-        agrees(&vpl::Settings::lightcuts(), 0.1, "lightcuts");
-        agrees(&vpl::Settings::reconstruction(), 0.1, "reconstruction");
-        agrees(&vpl::Settings::photon_cache(), 0.1, "photon-cache");
+        let few = |settings| with_lights_over(10, settings);
+        agrees(&vpl::Settings { spp: 128, ..few(vpl::Settings::cache()) }, 0.01, "cache");
+        agrees(&few(vpl::Settings::lightcuts()), 0.03, "lightcuts");
+        agrees(&few(vpl::Settings::reconstruction()), 0.03, "reconstruction");
+        agrees(&few(vpl::Settings::photon_cache()), 0.03, "photon-cache");
     }
 }

@@ -8,6 +8,14 @@ pub fn with_vpls(vpls: u32) -> vpl::Settings {
     vpl::Settings { light, ..vpl::Settings::cache() }
 }
 
+/// Settings with a fraction of their virtual lights and photons. On small films these take most of the time, and most
+/// noise is due to samples.
+pub fn with_lights_over(divisor: u32, mut settings: vpl::Settings) -> vpl::Settings {
+    settings.light.indirect /= divisor;
+    settings.gathering.photons /= divisor;
+    settings
+}
+
 /// The default without indirect light.
 pub fn direct_only() -> vpl::Settings {
     let light = LightPassSettings { direct: 1, indirect: 0, ..Default::default() };
