@@ -2,6 +2,7 @@
 
 use crate::kit::*;
 use crate::oracle::{assert_means_within, mean, sum};
+use crate::presets::with_lights_over;
 use glam::{DVec3, Vec2, Vec3};
 use lightsplat::math::Rgb;
 use lightsplat::method::{Renderer, path, vpl};
@@ -84,16 +85,17 @@ pub(crate) fn mean_by(world: &WorldAndView, settings: &impl Renderer) -> DVec3 {
 
 /// Mean of the image by paths.
 pub(crate) fn by_paths(world: &WorldAndView) -> DVec3 {
-    mean_by(world, &path::Settings { spp: spp_of(world, 1 << 19), ..Default::default() })
+    mean_by(world, &path::Settings { spp: spp_of(world, 1 << 20), ..Default::default() })
 }
 
 /// Mean of the default's images over some seeds.
 ///
 /// Few virtual lights count behind a coloured pane. They scatter the mean of one seed by a per cent.
 pub(crate) fn by_default(world: &WorldAndView) -> DVec3 {
-    const SEEDS: u32 = 4;
+    const SEEDS: u32 = 2;
     let spp = spp_of(world, (1 << 17) / SEEDS);
-    let of_seed = |seed| mean_by(world, &vpl::Settings { spp, seed, ..vpl::Settings::cache() });
+    let settings = vpl::Settings { spp, ..with_lights_over(SEEDS, vpl::Settings::cache()) };
+    let of_seed = |seed| mean_by(world, &vpl::Settings { seed, ..settings });
     (0..SEEDS).map(of_seed).sum::<DVec3>() / f64::from(SEEDS)
 }
 
