@@ -1,7 +1,7 @@
 //! Learning how much light arrives from which emitters, by rays from points on paths from the eye. The paths are spread
 //! over the whole film, so that a crop learns what the full image does.
 //!
-//! Rays are traced in waves: the first anywhere, the second where the first has found light. What is learned depends on
+//! Rays are traced in waves: the first anywhere, the second where the first has found light. The result depends on
 //! no image's random seed, so that the pilots of a plan, the image and its other methods share it.
 
 use crate::emission::{Carried, Walk};

@@ -355,6 +355,9 @@ impl Importer<'_> {
                 );
             }
         }
+        if matches!(source.alpha_mode, Checked::Invalid) {
+            self.report.lacks("an alphaMode that glTF does not define", "the material is opaque", name);
+        }
         if source.occlusion_texture.is_some() {
             self.report.note("baked occlusion is not used", "light in crevices is computed", name);
         }

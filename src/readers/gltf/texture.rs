@@ -109,6 +109,12 @@ impl Importer<'_> {
         if wrap != wrap_v {
             self.report.lacks("textures with different wrap modes along u and v", "v is as u", name);
         }
+        if [&sampler.wrap_s, &sampler.wrap_t].into_iter().any(|mode| matches!(mode, Checked::Invalid)) {
+            self.report.lacks("a wrap mode that glTF does not define", "the texture repeats", name);
+        }
+        if matches!(sampler.mag_filter, Some(Checked::Invalid)) {
+            self.report.lacks("a magFilter that glTF does not define", "texels are interpolated", name);
+        }
         let filter = match sampler.mag_filter {
             Some(Checked::Valid(MagFilter::Nearest)) => Filter::Nearest,
             _ => Filter::Bilinear,

@@ -26,7 +26,7 @@ impl<'a> Receivers16<'a> {
 
     /// Returns the learned distributions over tiles of the environment, by lane; `None` if they are not used.
     #[inline]
-    pub fn sky(&self) -> LearnedAt<'a> {
+    pub fn sky(&self) -> Option<LearnedAt<'a>> {
         let learned = self.learned?;
         let sky = learned.sky.as_ref()?;
         Some(sky.at(&learned.regions(self.position)))

@@ -6,6 +6,10 @@ use glam::Vec3;
 /// Axis of leaves.
 const LEAF: u32 = 3;
 
+/// Minimum distance between points on both sides of a plane over the extent of all points. Origins of rays are much
+/// closer to their surfaces.
+const MIN_GAP: f32 = 3e-5;
+
 /// A kd-tree.
 #[derive(Clone, Debug)]
 pub struct Regions {
@@ -29,40 +33,26 @@ impl Regions {
     pub fn new(points: &[Vec3], most: usize) -> (Regions, Vec<Vec<u32>>) {
         let mut order: Vec<u32> = (0..points.len() as u32).collect();
         let (mut regions, mut members) = (Regions { nodes: Vec::new(), depth: 0 }, Vec::new());
-        regions.split(points, most, &mut order, 0, &mut members);
+        let [low, high] = bounds(points, &order);
+        let gap = MIN_GAP * (high - low).max_element();
+        regions.split(&Splitting { points, most, gap }, &mut order, 0, &mut members);
         (regions, members)
     }
 
     /// Adds the nodes over the points in `order`, which lie `depth` branches below the root, and their `members`.
-    fn split(
-        &mut self,
-        points: &[Vec3],
-        most: usize,
-        order: &mut [u32],
-        depth: u32,
-        members: &mut Vec<Vec<u32>>,
-    ) {
-        let at = |i: &u32| points[*i as usize];
-        let low = order.iter().map(at).fold(Vec3::INFINITY, Vec3::min);
-        let high = order.iter().map(at).fold(Vec3::NEG_INFINITY, Vec3::max);
-        let axis = (high - low).max_position();
+    fn split(&mut self, by: &Splitting, order: &mut [u32], depth: u32, members: &mut Vec<Vec<u32>>) {
         let own = self.nodes.len();
-        if order.len() <= most || !(high[axis] > low[axis]) {
+        let Some((axis, middle, plane)) = by.plane(order) else {
             self.nodes.push(RegionNode { plane: 0.0, word: LEAF | (members.len() as u32) << 2 });
             self.depth = self.depth.max(depth);
             members.push(order.to_vec());
             return;
-        }
-        let middle = order.len() / 2;
-        order.select_nth_unstable_by(middle, |a, b| at(a)[axis].total_cmp(&at(b)[axis]).then(a.cmp(b)));
+        };
         let (left, right) = order.split_at_mut(middle);
-        // The plane is midway between points, so that rounding moves no point of a wall into another region.
-        let [below, above] = [left.iter().map(at).fold(low, Vec3::max)[axis], at(&right[0])[axis]];
-        let midway = below + 0.5 * (above - below);
-        self.nodes.push(RegionNode { plane: if midway > below { midway } else { above }, word: 0 });
-        self.split(points, most, left, depth + 1, members);
+        self.nodes.push(RegionNode { plane, word: 0 });
+        self.split(by, left, depth + 1, members);
         self.nodes[own].word = axis as u32 | (self.nodes.len() as u32) << 2;
-        self.split(points, most, right, depth + 1, members);
+        self.split(by, right, depth + 1, members);
     }
 
     /// Returns the region of a point.
@@ -162,6 +152,47 @@ impl Regions {
     }
 }
 
+/// Rule for the planes between regions.
+struct Splitting<'a> {
+    points: &'a [Vec3],
+    /// Maximum number of points in a region.
+    most: usize,
+    /// Minimum distance between points on both sides of a plane.
+    gap: f32,
+}
+
+impl Splitting<'_> {
+    /// Sorts points along an axis and returns the plane that halves them best: its axis, the number of points before
+    /// it and its coordinate; `None` if the points are to stay together.
+    ///
+    /// A plane lies midway in a gap. A wall along it would else be divided by rounding: the origins of rays from it
+    /// would have other regions than the wall itself.
+    fn plane(&self, order: &mut [u32]) -> Option<(usize, usize, f32)> {
+        if order.len() <= self.most {
+            return None;
+        }
+        let at = |i: &u32, axis: usize| self.points[*i as usize][axis];
+        let [low, high] = bounds(self.points, order);
+        let mut axes = [0, 1, 2];
+        axes.sort_by(|a, b| (high - low)[*b].total_cmp(&(high - low)[*a]));
+        for axis in axes {
+            order.sort_unstable_by(|a, b| at(a, axis).total_cmp(&at(b, axis)).then(a.cmp(b)));
+            let gap = |i: &usize| at(&order[*i], axis) - at(&order[i - 1], axis);
+            let wide = (1..order.len()).filter(|i| gap(i) > self.gap);
+            if let Some(middle) = wide.min_by_key(|i| i.abs_diff(order.len() / 2)) {
+                return Some((axis, middle, at(&order[middle], axis) - 0.5 * gap(&middle)));
+            }
+        }
+        None
+    }
+}
+
+/// Returns the corners of a box around some of the points.
+fn bounds(points: &[Vec3], order: &[u32]) -> [Vec3; 2] {
+    let some = || order.iter().map(|i| points[*i as usize]);
+    [some().fold(Vec3::INFINITY, Vec3::min), some().fold(Vec3::NEG_INFINITY, Vec3::max)]
+}
+
 /// Samples of regions, and the weight of a node's mean in those below it, in samples.
 struct Shrinkage<A> {
     add: A,
@@ -191,6 +222,23 @@ mod tests {
                 let expected: [usize; LANES] = std::array::from_fn(|lane| regions.of(x.get(lane)));
                 assert_eq!(regions.find(&x), expected, "{size}");
             }
+        }
+    }
+
+    #[test]
+    fn origins_of_rays_have_the_regions_of_their_surfaces() {
+        // A table whose height is rounded, below a wall.
+        let point = |i: u32| {
+            let (a, b) = (owen_sobol_2d(i, 1), owen_sobol_2d(i, 2));
+            let table = Vec3::new(a.x, 0.9 + 1e-7 * (b.x - 0.5), a.y);
+            if i.is_multiple_of(4) { Vec3::new(a.x, 0.9 + a.y, 1.0) } else { table }
+        };
+        let points: Vec<Vec3> = (0..8000).map(point).collect();
+        let (regions, members) = Regions::new(&points, 16);
+        assert!(members.len() > 300);
+        for x in &points {
+            let origin = crate::shadow::ray_from(*x, Vec3::Y, Vec3::ONE).origin;
+            assert_eq!(regions.of(origin), regions.of(*x), "{x}");
         }
     }
 }

@@ -159,7 +159,11 @@ fn encoded(text: &str, random: &mut Random) -> (Vec<u8>, &'static str) {
 /// Puts NaN in place of a number.
 fn with_nan(bytes: &[u8], format: &str, random: &mut Random) -> (Vec<u8>, String, Rule) {
     let mut damaged = bytes.to_vec();
-    let numbers = number_places(bytes);
+    let mut numbers = number_places(bytes);
+    if format == "gltf" {
+        // Names may hold any number.
+        numbers.retain(|place| bytes[..place.start].iter().filter(|byte| **byte == b'"').count() % 2 == 0);
+    }
     if format == "stl" && !bytes.is_ascii() {
         // One of the nine coordinates behind the normal.
         let records = (bytes.len() - 84) / 50;

@@ -102,6 +102,20 @@ fn blended_materials_are_as_opaque_as_texture_and_vertices_say() {
 }
 
 #[test]
+fn modes_that_gltf_does_not_define_are_named() {
+    let mut model = Model::new();
+    let texture = model.texture([[255, 255, 255, 128]; 4], json!({ "wrapS": 1, "magFilter": 2 }));
+    let base = json!({ "baseColorTexture": { "index": texture } });
+    model.push("materials", json!({ "name": "m", "alphaMode": "MSAK", "pbrMetallicRoughness": base }));
+    let mesh = model.square(Some(0));
+    model.node(json!({ "mesh": mesh }));
+    let loaded = load_bytes("m.glb", &model.glb()).unwrap();
+    for what in ["an alphaMode", "a wrap mode", "a magFilter"] {
+        assert!(loaded.warnings.iter().any(|warning| warning.what.contains(what)), "{:?}", loaded.warnings);
+    }
+}
+
+#[test]
 fn masks_cut_the_product_of_factor_texture_and_vertices() {
     let mut model = Model::new();
     let texture = model.texture([[255, 255, 255, 128]; 4], json!({}));

@@ -21,7 +21,7 @@ mod table;
 mod tests;
 mod tiles;
 
-pub use learned::LearnedSky;
+pub use learned::{LearnedAt, LearnedSky};
 pub use sample::{EnvironmentSample, EnvironmentSamples16};
 
 use super::observed::Observed;
@@ -67,9 +67,6 @@ struct TileSample {
     density: f32,
 }
 
-/// Learned distributions over tiles at the sixteen points for which directions are sampled.
-pub type LearnedAt<'a> = Option<[&'a TileTable; LANES]>;
-
 impl EnvironmentLight {
     /// Builds the distributions; `None` if environment and discs are black.
     pub fn new(environment: Option<&Environment>, discs: &[DistantDisc]) -> Option<EnvironmentLight> {
@@ -96,22 +93,22 @@ impl EnvironmentLight {
         if !(mean_luminance > 0.0 && mean_luminance.is_finite()) {
             return None;
         }
-        light.presamples = light.presample();
+        let flux: Vec<f32> = light.tiles.all().iter().map(|tile| tile.flux).collect();
+        light.presamples = light.presample(&flux);
         Some(light)
     }
 
-    /// Samples directions of all tiles.
-    fn presample(&self) -> Presamples {
-        let flux: Vec<f32> = self.tiles.all().iter().map(|tile| tile.flux).collect();
+    /// Samples directions of all tiles, which have these shares of all samples.
+    fn presample(&self, shares: &[f32]) -> Presamples {
         let sample = |tile: usize, u: &[Vec2; LANES]| {
             self.sample_tiles(&u.map(|u| TileSample { tile, u, density: 1.0 }), u16::MAX)
         };
-        Presamples::new(&flux, sample, |direction| self.discs.around(direction).next().is_some())
+        Presamples::new(shares, sample, |direction| self.discs.around(direction).next().is_some())
     }
 
     /// Learns from observations how much light comes from each tile.
     pub(super) fn learn(&self, observed: &Observed) -> LearnedSky {
-        LearnedSky::new(self.tiles.all(), observed)
+        LearnedSky::new(self.tiles.all(), observed, |shares| self.presample(shares))
     }
 
     /// Returns the mean luminance over the sphere of directions.
@@ -144,7 +141,12 @@ impl EnvironmentLight {
 
     /// Returns [`EnvironmentLight::radiance_pdf`] in the lanes of `wanted`. The lanes wait for memory together, because
     /// a large map exceeds the caches.
-    pub fn radiance_pdf16(&self, d: &Vec3x16, wanted: u16, learned: LearnedAt) -> [(Rgb, f32); LANES] {
+    pub fn radiance_pdf16(
+        &self,
+        d: &Vec3x16,
+        wanted: u16,
+        learned: Option<LearnedAt>,
+    ) -> [(Rgb, f32); LANES] {
         let mut found = self.source_radiance_pdf16(d, wanted, learned);
         if !self.discs.is_empty() {
             let tables = self.tables(learned);
@@ -159,7 +161,12 @@ impl EnvironmentLight {
     }
 
     /// Returns radiances and densities without the discs.
-    fn source_radiance_pdf16(&self, d: &Vec3x16, wanted: u16, learned: LearnedAt) -> [(Rgb, f32); LANES] {
+    fn source_radiance_pdf16(
+        &self,
+        d: &Vec3x16,
+        wanted: u16,
+        learned: Option<LearnedAt>,
+    ) -> [(Rgb, f32); LANES] {
         let map = match &self.source {
             SkySource::Constant(radiance) => {
                 let even = learned.is_none() && self.discs.is_empty();
@@ -219,7 +226,12 @@ impl EnvironmentLight {
 
     /// Samples one of the directions that were sampled beforehand, in each lane of `wanted`. Densities are those of
     /// continuous directions. A constant sky without discs, of which nothing was learned, has new directions.
-    pub(super) fn sample16(&self, u: &Vec2x16, wanted: u16, learned: LearnedAt) -> EnvironmentSamples16 {
+    pub(super) fn sample16(
+        &self,
+        u: &Vec2x16,
+        wanted: u16,
+        learned: Option<LearnedAt>,
+    ) -> EnvironmentSamples16 {
         let mut samples = EnvironmentSamples16::default();
         if learned.is_none() && self.sample_even(Vec2::ZERO).is_some() {
             for i in lanes_in(wanted) {
@@ -231,10 +243,11 @@ impl EnvironmentLight {
         }
         let tables = self.tables(learned);
         let (tiles, rest) = TileTable::sample16(&tables, &u.x, wanted);
-        let positions = each(wanted, |i| self.presamples.find(tiles[i], Vec2::new(rest[i], u.y[i])));
+        let stored = learned.map_or(&self.presamples, |at| at.presamples);
+        let positions = each(wanted, |i| stored.find(tiles[i], Vec2::new(rest[i], u.y[i])));
         // Short loops, so that many lanes wait for memory at once.
         let densities = each(wanted, |i| tables[i].density(tiles[i]));
-        let presamples = each(wanted, |i| *self.presamples.get(positions[i]));
+        let presamples = each(wanted, |i| *stored.get(positions[i]));
         let mut on_discs = 0;
         for i in lanes_in(wanted) {
             let presample = &presamples[i];
@@ -257,8 +270,8 @@ impl EnvironmentLight {
     }
 
     /// Chooses sixteen tiles as is learned of one place, by numbers in [0, 1).
-    pub fn tiles_by(&self, learned: &[&TileTable; LANES], u: &F32x16) -> [usize; LANES] {
-        TileTable::sample16(learned, u, u16::MAX).0
+    pub fn tiles_by(&self, learned: &LearnedAt, u: &F32x16) -> [usize; LANES] {
+        TileTable::sample16(&learned.tables, u, u16::MAX).0
     }
 
     /// Returns one of the directions that were sampled beforehand in each of sixteen tiles; `None` in tiles without
@@ -344,8 +357,8 @@ impl EnvironmentLight {
 
     /// Returns the distribution over tiles for each lane.
     #[inline]
-    fn tables<'a>(&'a self, learned: LearnedAt<'a>) -> [&'a TileTable; LANES] {
-        learned.unwrap_or([&self.by_flux; LANES])
+    fn tables<'a>(&'a self, learned: Option<LearnedAt<'a>>) -> [&'a TileTable; LANES] {
+        learned.map_or([&self.by_flux; LANES], |at| at.tables)
     }
 }
 

@@ -2,12 +2,12 @@
 //!
 //! Sampling a direction of a map searches tables that exceed the caches, and then reads the map. A presample takes one
 //! read. The samples of a tile lie in a grid of cells of the unit square, so that random numbers stay stratified. A
-//! tile has the more of them the more light it has. Shadows of the sun would show steps otherwise.
+//! tile has the more of them the more often it is chosen. Shadows of the sun would show steps otherwise.
 //!
 //! Errors: the expected value of an estimate is a mean over fixed directions, in place of an integral. The random
 //! numbers of a tile's directions are a net, and radiance over density hardly varies in a tile. On a map with texels a
-//! thousand times as bright as others, tiles differ by up to 1.8 % and irradiances by .04 %. Where few tiles are seen
-//! by learned visibility, shadows have steps of about 1/256 of a tile's light.
+//! thousand times as bright as others, tiles differ by up to 1.8 % and irradiances by .04 %. Where few tiles are seen,
+//! as through a window, they have more directions of their own ([`super::LearnedSky`]).
 //!
 //! Densities stay those of continuous directions, also in multiple importance sampling.
 
@@ -18,10 +18,10 @@ use glam::{Vec2, Vec3};
 use rayon::prelude::*;
 
 /// Minimum number of cells along an edge of a tile's grid.
-const MIN_EDGE: u32 = 16;
+const MIN_EDGE: u32 = 8;
 
 /// Maximum number of cells along an edge of a tile's grid.
-const MAX_EDGE: u32 = 64;
+const MAX_EDGE: u32 = 128;
 
 /// Seed of the directions, combined with the tile's number.
 const SEED: u32 = 0x51a7_3ed5;
@@ -49,16 +49,16 @@ pub(super) struct Presamples {
 }
 
 impl Presamples {
-    /// Samples all tiles, which have the shares `flux` of all flux. Calls `sample` with a tile and sixteen pairs of
-    /// random numbers, and `on_disc` to know if a disc contains a direction.
+    /// Samples all tiles, which are chosen with probabilities in proportion to `shares` on average. Calls `sample` with
+    /// a tile and sixteen pairs of random numbers, and `on_disc` to know if a disc contains a direction.
     pub fn new(
-        flux: &[f32],
+        shares: &[f32],
         sample: impl Fn(usize, &[Vec2; LANES]) -> [Option<EnvironmentSample>; LANES] + Sync,
         on_disc: impl Fn(Vec3) -> bool + Sync,
     ) -> Presamples {
-        let count = flux.len();
-        let of_tile = |(tile, flux): (usize, &f32)| {
-            let edge = edge(flux * count as f32);
+        let mean = shares.iter().sum::<f32>() / shares.len() as f32;
+        let of_tile = |(tile, share): (usize, &f32)| {
+            let edge = edge(share / mean);
             let mut cells = vec![Presample::default(); (edge * edge) as usize];
             for points in (0..edge * edge).step_by(LANES) {
                 let u = std::array::from_fn(|i| owen_sobol_2d(points + i as u32, hash(tile as u32, SEED)));
@@ -71,7 +71,7 @@ impl Presamples {
             }
             (edge, cells)
         };
-        let tiles: Vec<(u32, Vec<Presample>)> = flux.par_iter().enumerate().map(of_tile).collect();
+        let tiles: Vec<(u32, Vec<Presample>)> = shares.par_iter().enumerate().map(of_tile).collect();
         let mut found = Presamples { samples: Vec::new(), grids: Vec::new() };
         for (edge, cells) in tiles {
             found.grids.push((found.samples.len() as u32, edge));
@@ -101,12 +101,12 @@ impl Presamples {
     }
 }
 
-/// Returns the number of cells along the edge of the grid of a tile, by its flux over the mean of all tiles.
-fn edge(relative_flux: f32) -> u32 {
+/// Returns the number of cells along the edge of the grid of a tile, by its share over the mean of all tiles.
+fn edge(relative: f32) -> u32 {
     // A tile without light is never chosen.
-    let mut edge = if relative_flux > 0.0 { MIN_EDGE } else { 1 };
-    // A grid has at least half as many cells as is in proportion to flux, up to the maximum.
-    while edge < MAX_EDGE && relative_flux * (MIN_EDGE * MIN_EDGE) as f32 > (2 * edge * edge) as f32 {
+    let mut edge = if relative > 0.0 { MIN_EDGE } else { 1 };
+    // A grid has at least half as many cells as is in proportion to its share, up to the maximum.
+    while edge < MAX_EDGE && relative * (MIN_EDGE * MIN_EDGE) as f32 > (2 * edge * edge) as f32 {
         edge *= 2;
     }
     edge
