@@ -38,6 +38,9 @@ const WAVES: [usize; 2] = [4, 8];
 /// Minimum share of occluded rays in the first wave for another wave.
 const MIN_OCCLUDED: f32 = 0.25;
 
+/// Maximum number of points on a path: a visible surface, and one that lights it.
+const POINTS: u32 = 2;
+
 /// Maximum number of edges of a path.
 const MAX_EDGES: u32 = 16;
 
@@ -63,8 +66,6 @@ pub struct Learning {
     film: [u32; 2],
     /// Number of paths from the eye.
     paths: u32,
-    /// Maximum number of points on a path.
-    points: u32,
 }
 
 /// Light that was learned, and the rays that it took.
@@ -110,12 +111,11 @@ struct Wave<'a> {
 }
 
 impl Learning {
-    /// Makes the order for an image of a view with `spp` samples per pixel, whose paths have at most `points` surfaces
-    /// on which light is sampled.
-    pub fn new(view: &View, spp: u32, points: u32) -> Learning {
+    /// Makes the order for an image of a view with `spp` samples per pixel.
+    pub fn new(view: &View, spp: u32) -> Learning {
         let samples = view.window.film_pixel_count() * u64::from(spp.clamp(1, MAX_SPP));
         let paths = (samples / SAMPLES_PER_PATH).clamp(MIN_PATHS, MAX_PATHS) as u32;
-        Learning { camera: view.camera, film: view.window.film, paths, points }
+        Learning { camera: view.camera, film: view.window.film, paths }
     }
 
     /// Traces the rays and learns from them; learns from fewer once cancelled.
@@ -177,7 +177,7 @@ impl Learning {
             });
             let mut sampler = Sampler::new(PATH_SEED, number);
             let ray = view.sample_ray(pixel, sampler.next_2d(), PATH_SEED, number);
-            let mut left = self.points;
+            let mut left = POINTS;
             walk.follow(world.behind_hidden(ray), Rgb::ONE, &mut sampler, |vertex, _| {
                 if vertex.bsdf.has_smooth() {
                     points.push(LearningPoint::new(

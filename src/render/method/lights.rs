@@ -42,16 +42,9 @@ impl LightStore {
         self.photons.forget();
     }
 
-    /// Returns what is learned of the light in a view for images with `spp` samples per pixel, whose paths sample light
-    /// on `points` surfaces at most.
-    pub fn learned(
-        &self,
-        world: &World,
-        view: &View,
-        [spp, points]: [u32; 2],
-        control: &Control,
-    ) -> Arc<LearnedLight> {
-        let wanted = Learning::new(view, spp, points);
+    /// Returns what is learned of the light in a view for images with `spp` samples per pixel.
+    pub fn learned(&self, world: &World, view: &View, spp: u32, control: &Control) -> Arc<LearnedLight> {
+        let wanted = Learning::new(view, spp);
         recall(&self.learned, wanted, control, |wanted| wanted.learn(world, view, control))
     }
 

@@ -7,7 +7,6 @@ use base::progress::Control;
 use base::stats::Stage;
 use std::sync::Arc;
 use transport::eye::{DirectSampling, EyePass, LightSources, ShadingPoints, TILE};
-use transport::learning::LearnedLight;
 use transport::lights::{Family, LightPassSettings, Lights};
 use world::view::View;
 use world::{SurfacePoint, World};
@@ -66,7 +65,7 @@ impl<'w> Prepared<'w> {
         let settings = sampling.eye(&world.scene);
         let caustics = lights.photons.for_image(world, view, settings, control, &mut tally);
         let known = direct.as_ref().map(|direct| {
-            let learn = || learned(world, lights, view, sampling.spp, control);
+            let learn = || lights.learned(world, view, sampling.spp, control);
             (direct, tally.time(Stage::EyePass, learn))
         });
         let sources = known.as_ref().map(|(direct, known)| LightSources {
@@ -95,19 +94,6 @@ impl<'w> Prepared<'w> {
         let lights = lights.get(world, wanted, control, &mut tally);
         Prepared { eye, lights, tally }
     }
-}
-
-/// Returns what is learned of the light in a view for an eye pass with `spp` samples per pixel. Paths go on beyond
-/// their first hits only if something bends light.
-pub fn learned(
-    world: &World,
-    lights: &LightStore,
-    view: &View,
-    spp: u32,
-    control: &Control,
-) -> Arc<LearnedLight> {
-    let points = if world.specular.bends_light() { 2 } else { 1 };
-    lights.learned(world, view, [spp, points], control)
 }
 
 /// Returns about `most` points whose indirect light photons are planned for; none if no light comes from infinitely

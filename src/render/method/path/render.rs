@@ -17,15 +17,11 @@ use base::parallel::{ShortRuns, Workspaces};
 use base::progress::Control;
 use base::stats::Stage;
 use rayon::prelude::*;
-use std::sync::Arc;
 use transport::eye::{PackedGuide, PackedGuides};
 use transport::learning::LearnedLight;
 use transport::paths::{Batch, Estimand};
 use world::World;
 use world::view::View;
-
-/// Number of surfaces on a path from which light is learned.
-const LEARNING_POINTS: u32 = 3;
 
 method_settings! {
     /// Settings of the method.
@@ -47,7 +43,7 @@ impl Renderer for Settings {
     }
 
     fn render(&self, world: &World, lights: &LightStore, view: &View, control: &Control) -> Output {
-        self.image(world, &self.learned(world, lights, view, control), None, view, control)
+        self.image(world, &lights.learned(world, view, self.spp, control), None, view, control)
     }
 
     fn estimand(&self) -> Estimand {
@@ -79,7 +75,7 @@ impl Renderer for Settings {
         groups: &[Vec<[u32; 2]>],
         control: &Control,
     ) -> Option<SampledPixels> {
-        let known = self.learned(world, lights, view, control);
+        let known = lights.learned(world, view, self.spp, control);
         sample_pixels(world, view, self.max_depth, &known, groups, control)
     }
 
@@ -97,22 +93,11 @@ impl Resumes for Settings {
         view: &View,
         control: &Control,
     ) -> Output {
-        self.image(world, &self.learned(world, lights, view, control), Some(partial), view, control)
+        self.image(world, &lights.learned(world, view, self.spp, control), Some(partial), view, control)
     }
 }
 
 impl Settings {
-    /// Returns what is learned of the light in a view.
-    fn learned(
-        &self,
-        world: &World,
-        lights: &LightStore,
-        view: &View,
-        control: &Control,
-    ) -> Arc<LearnedLight> {
-        lights.learned(world, view, [self.spp, LEARNING_POINTS], control)
-    }
-
     /// Renders the image, from the end of an interrupted one if there is one.
     fn image(
         &self,

@@ -6,7 +6,6 @@ use super::{Preset, Settings};
 use crate::method::Output;
 use crate::method::lights::LightStore;
 use crate::method::photon_store::FoundCaustics;
-use crate::method::prepared::learned;
 use crate::method::renderer::{FormerFrames, Renderer, Walks};
 use crate::method::sampled_pixels::{PILOT_SPP, SampledPixels};
 use crate::method::sampling::HasSampling;
@@ -108,7 +107,7 @@ impl Renderer for Settings {
         let settings = EyeSettings { spp: PILOT_SPP, seed: 0, ..self.sampling().eye(&world.scene) };
         let FoundCaustics { caustics, rays, shadow_rays, .. } =
             lights.photons.pilot(world, view, settings, control);
-        let known = learned(world, lights, view, self.spp, control);
+        let known = lights.learned(world, view, self.spp, control);
         let sources =
             LightSources { direct: &direct, caustics: caustics.as_ref(), learned: known.light.as_ref() };
         let found = EyePass::pilot(world, view, settings, sources, groups, control);
