@@ -13,12 +13,12 @@ pub struct SampledPixels {
     pub photons: Vec<ByPhotons>,
     /// Rays per sample.
     pub rays_a_sample: f64,
-    /// All rays traced, with those of learning passes.
+    /// All rays traced, without those of learned light, which the image shares.
     pub rays: u64,
 }
 
 impl SampledPixels {
-    /// Creates the light of samples that took `rays_of_samples`, besides `other_rays` of learning passes.
+    /// Creates the light of samples that took `rays_of_samples`, besides `other_rays` of other pilots.
     pub fn new(luminances: [Vec<f64>; 2], rays_of_samples: u64, other_rays: u64) -> SampledPixels {
         let samples = 2.0 * f64::from(PILOT_SPP) * luminances[0].len().max(1) as f64;
         let rays = rays_of_samples + other_rays;

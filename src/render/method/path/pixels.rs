@@ -7,7 +7,6 @@ use base::progress::Control;
 use glam::DVec3;
 use rayon::prelude::*;
 use transport::eye::FullPaths;
-use transport::learning::LearnedLight;
 use transport::paths::{Batch, Estimand, PathStart, RayCounts, start};
 use world::World;
 use world::light::Learned;
@@ -85,12 +84,11 @@ pub(super) fn sample_pixels(
     world: &World,
     view: &View,
     max_depth: Option<u32>,
-    known: &LearnedLight,
+    learned: Option<&Learned>,
     groups: &[Vec<[u32; 2]>],
     control: &Control,
 ) -> Option<SampledPixels> {
     let max_depth = world.scene.path_limit(max_depth);
-    let learned = known.light.as_ref();
     let sample = |pixels: &Vec<[u32; 2]>| {
         let mut counts = RayCounts::default();
         let wanted: Vec<PixelPaths> =
@@ -107,7 +105,6 @@ pub(super) fn sample_pixels(
     };
     let found: Vec<([Vec<f64>; 2], RayCounts)> = groups.par_iter().one_by_one().map(sample).collect();
     let rays = found.iter().map(|(_, counts)| counts.rays + counts.shadow_rays).sum();
-    let before = known.counts.rays + known.counts.shadow_rays;
     let luminances = [0, 1].map(|set| found.iter().flat_map(|(sets, _)| &sets[set]).copied().collect());
-    (!control.is_cancelled()).then(|| SampledPixels::new(luminances, rays, before))
+    (!control.is_cancelled()).then(|| SampledPixels::new(luminances, rays, 0))
 }

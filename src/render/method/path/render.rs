@@ -76,7 +76,7 @@ impl Renderer for Settings {
         control: &Control,
     ) -> Option<SampledPixels> {
         let known = lights.learned(world, view, self.spp, control);
-        sample_pixels(world, view, self.max_depth, &known, groups, control)
+        sample_pixels(world, view, self.max_depth, known.light.as_ref(), groups, control)
     }
 
     fn moves(&self) -> &'static [Move] {

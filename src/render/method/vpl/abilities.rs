@@ -113,9 +113,8 @@ impl Renderer for Settings {
         let found = EyePass::pilot(world, view, settings, sources, groups, control);
         let EyePilot { luminances, photons, sampled, before } = found;
         let luminances = luminances.map(|by_group| by_group.into_iter().flatten().map(f64::from).collect());
-        let before = [before, known.counts].map(|counts| counts.rays + counts.shadow_rays);
-        let sampled = sampled.rays + sampled.shadow_rays;
-        let pixels = SampledPixels::new(luminances, sampled, before.iter().sum::<u64>() + rays + shadow_rays);
+        let before = before.rays + before.shadow_rays + rays + shadow_rays;
+        let pixels = SampledPixels::new(luminances, sampled.rays + sampled.shadow_rays, before);
         (!control.is_cancelled()).then_some(SampledPixels { photons, ..pixels })
     }
 
