@@ -105,17 +105,20 @@ fn directions_are_drawn_with_the_densities_told_even_in_tiles_and_uneven_ones() 
 
 #[test]
 fn what_is_learned_of_a_window_is_where_most_samples_go_and_all_directions_keep_some() {
+    const PACKETS: usize = 32;
     let light = EnvironmentLight::new(Some(&Environment::Map(two_parts())), &[]).unwrap();
     let open = |d: Vec3| d.x > 0.5;
     // Two places: light from one side at the one, none at the other.
     let (mut observers, mut rays) = (Vec::new(), LightRays::default());
     for i in 0..128u32 {
         observers.push(Vec3::new(if i < 64 { 0.0 } else { 10.0 }, i as f32 * 1e-3, 0.0));
-        for packet in 0..2 {
+        for packet in 0..PACKETS {
             let tiles =
-                std::array::from_fn(|lane| (i as usize * 2 + packet + 16 * lane) % light.tile_count());
+                std::array::from_fn(|lane| (i as usize * PACKETS + packet + 16 * lane) % light.tile_count());
             let mut u = Vec2x16::default();
-            (0..LANES).for_each(|lane| u.set(lane, owen_sobol_2d(i * 32 + lane as u32, 9)));
+            (0..LANES).for_each(|lane| {
+                u.set(lane, owen_sobol_2d((i * PACKETS as u32 + packet as u32) * 16 + lane as u32, 9))
+            });
             let directions = light.directions_of_tiles(&tiles, &u);
             rays.sky.extend(
                 tiles
