@@ -187,7 +187,7 @@ fn mirrors_glass_coats_and_sharp_lobes_show_direct_light_as_paths_see_it() {
         let mut scene = gallery();
         add(&mut scene);
         let world = world(scene);
-        assert_same_mean(&by_cache(&world, direct_only(), SEEDS / 2), &paths(&world, 1024, None), name);
+        assert_same_mean(&by_cache(&world, direct_only(), SEEDS), &paths(&world, 1024, None), name);
     }
 }
 
