@@ -4,12 +4,12 @@
 //! Rays are traced in waves: the first anywhere, the second where the first has found light. The result depends on
 //! no image's random seed, so that the pilots of a plan, the image and its other methods share it.
 
-use crate::emission::{Carried, Walk};
+use crate::emission::{Carried, Walk, WalkVertex};
 use crate::paths::RayCounts;
 use base::math::{LANES, Rgb, Vec2x16, Vec3x16, lanes_in};
 use base::parallel::ShortRuns;
 use base::progress::Control;
-use base::sampling::{Sampler, hash, owen_sobol_2d};
+use base::sampling::{Sampler, hash};
 use base::stats::add_fields;
 use embree::Rays16;
 use glam::Vec3;
@@ -18,16 +18,16 @@ use scene::Camera;
 use std::ops::ControlFlow;
 use world::light::{DirectSamples16, EnvironmentLight, Learned, LightRays, Receivers16};
 use world::view::View;
-use world::{World, shadow};
+use world::{SurfacePoint, World, shadow};
 
 /// Maximum number of paths.
-const MAX_PATHS: u64 = 16384;
+const MAX_PATHS: u64 = 8192;
 
 /// Minimum number of paths.
 const MIN_PATHS: u64 = 64;
 
 /// Number of eye samples per path.
-const SAMPLES_PER_PATH: u64 = 128;
+const SAMPLES_PER_PATH: u64 = 256;
 
 /// Number of samples per pixel beyond which no more is learned, so that an image can be resumed for more samples.
 const MAX_SPP: u32 = 16;
@@ -76,16 +76,6 @@ pub struct LearnedLight {
     pub counts: RayCounts,
 }
 
-/// Point from which rays are traced.
-#[derive(Clone, Copy)]
-struct LearningPoint {
-    position: Vec3,
-    /// Unit shading normal on the side that reflects; zero if light from both sides counts.
-    normal: Vec3,
-    /// Normal of the triangle.
-    geometric_normal: Vec3,
-}
-
 /// Numbers of visibility tests.
 #[derive(Clone, Copy, Default)]
 struct Tests {
@@ -127,10 +117,10 @@ impl Learning {
         }
         let points = self.points_on_paths(world, view, control, &mut found.counts);
         let positions: Vec<Vec3> = points.iter().map(|point| point.position).collect();
-        let mut waves: Vec<LightRays> = Vec::new();
+        let mut observed = world.emitters.observed_from(&positions);
         for number in 0..WAVES.len() {
             let wave = Wave { world, number, learned: found.light.as_ref() };
-            let look = |(chunk, points): (usize, &[LearningPoint])| {
+            let look = |(chunk, points): (usize, &[SurfacePoint])| {
                 let (mut rays, mut tests) = (LightRays::default(), Tests::default());
                 for (i, point) in points.iter().enumerate() {
                     if let Some(environment) = environment {
@@ -151,8 +141,8 @@ impl Learning {
                 all.emitters.append(&mut rays.emitters);
             }
             found.counts.shadow_rays += tests.all;
-            waves.push(all);
-            found.light = Some(world.emitters.learn(&positions, &waves));
+            observed.add(all);
+            found.light = Some(world.emitters.learn(&observed));
             if tests.occluded as f32 <= MIN_OCCLUDED * tests.all as f32 || control.is_cancelled() {
                 break;
             }
@@ -167,24 +157,16 @@ impl Learning {
         view: &View,
         control: &Control,
         counts: &mut RayCounts,
-    ) -> Vec<LearningPoint> {
+    ) -> Vec<SurfacePoint> {
         let walk = Walk { world, carried: Carried::Importance, max_edges: MAX_EDGES, by_delta: false };
-        let follow = |number: u32, points: &mut Vec<LearningPoint>| {
-            let at = owen_sobol_2d(number, PATH_SEED);
-            let pixel = [0, 1].map(|axis| {
-                let length = self.film[axis];
-                ((at[axis] * length as f32) as u32).min(length - 1)
-            });
+        let follow = |number: u32, points: &mut Vec<SurfacePoint>| {
+            let pixel = view.window.spread_pixel(number, PATH_SEED);
             let mut sampler = Sampler::new(PATH_SEED, number);
             let ray = view.sample_ray(pixel, sampler.next_2d(), PATH_SEED, number);
             let mut left = POINTS;
             walk.follow(world.behind_hidden(ray), Rgb::ONE, &mut sampler, |vertex, _| {
                 if vertex.bsdf.has_smooth() {
-                    points.push(LearningPoint::new(
-                        vertex.surface,
-                        vertex.bsdf.scatters_across(),
-                        vertex.back,
-                    ));
+                    points.push(receiving(vertex));
                     left -= 1;
                 }
                 if left == 0 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
@@ -199,33 +181,31 @@ impl Learning {
             (points, rays)
         };
         let chunks = (0..self.paths.div_ceil(CHUNK as u32)).into_par_iter().one_by_one();
-        let found: Vec<(Vec<LearningPoint>, u64)> = chunks.map(chunk).collect();
+        let found: Vec<(Vec<SurfacePoint>, u64)> = chunks.map(chunk).collect();
         counts.rays += found.iter().map(|(_, rays)| rays).sum::<u64>();
         found.into_iter().flat_map(|(points, _)| points).collect()
     }
 }
 
-impl LearningPoint {
-    /// Returns the point on a surface seen along `back`, on both sides of which light counts if it lets light `across`.
-    fn new(surface: &world::Surface, across: bool, back: Vec3) -> LearningPoint {
-        let shading = surface.frame.normal;
-        let normal = match shading.dot(back) < 0.0 {
-            _ if across => Vec3::ZERO,
-            true => -shading,
-            false => shading,
-        };
-        LearningPoint { position: surface.position, normal, geometric_normal: surface.normal }
-    }
+/// Returns the point on a surface that a path meets; its normal is zero if light from both sides counts.
+fn receiving(vertex: &WalkVertex) -> SurfacePoint {
+    let (surface, shading) = (vertex.surface, vertex.surface.frame.normal);
+    let normal = match vertex.wo.z < 0.0 {
+        _ if vertex.bsdf.scatters_across() => Vec3::ZERO,
+        true => -shading,
+        false => shading,
+    };
+    SurfacePoint { position: surface.position, normal, geometric_normal: surface.normal }
+}
 
-    /// Returns the point in all lanes.
-    fn splat(&self) -> (Vec3x16, Vec3x16) {
-        (Vec3x16::splat(self.position), Vec3x16::splat(self.normal))
-    }
+/// Returns the cosine that weights light from a direction; 0 if it does not count.
+fn weight(point: &SurfacePoint, direction: Vec3) -> f32 {
+    if point.normal == Vec3::ZERO { 1.0 } else { point.normal.dot(direction).max(0.0) }
+}
 
-    /// Returns the cosine that weights light from a direction; 0 if it does not count.
-    fn cos(&self, direction: Vec3) -> f32 {
-        if self.normal == Vec3::ZERO { 1.0 } else { self.normal.dot(direction).max(0.0) }
-    }
+/// Returns position and normal of a point in all lanes.
+fn splat(point: &SurfacePoint) -> (Vec3x16, Vec3x16) {
+    (Vec3x16::splat(point.position), Vec3x16::splat(point.normal))
 }
 
 impl Wave<'_> {
@@ -244,12 +224,12 @@ impl Wave<'_> {
     fn trace_sky(
         &self,
         environment: &EnvironmentLight,
-        point: &LearningPoint,
+        point: &SurfacePoint,
         index: usize,
         rays: &mut Vec<(u16, f32)>,
     ) -> Tests {
         let (mut sampler, mut tests) = (self.sampler(SKY_SEED, index), Tests::default());
-        let (position, normal) = point.splat();
+        let (position, normal) = splat(point);
         let at = Receivers16 { position: &position, normal: &normal, learned: self.learned };
         let (start, count) = (sampler.next_1d(), self.packets() * LANES);
         for packet in 0..self.packets() {
@@ -269,7 +249,7 @@ impl Wave<'_> {
             let (mut segments, mut cos) = (Rays16::default(), [0.0; LANES]);
             for (lane, direction) in directions.iter().enumerate() {
                 if let Some(direction) = *direction {
-                    cos[lane] = point.cos(direction);
+                    cos[lane] = weight(point, direction);
                     segments.set(lane, &shadow::ray_from(point.position, point.geometric_normal, direction));
                 }
             }
@@ -283,9 +263,9 @@ impl Wave<'_> {
     }
 
     /// Traces rays from the point of the given index to lamps.
-    fn trace_lamps(&self, point: &LearningPoint, index: usize, rays: &mut Vec<Option<(u32, bool)>>) -> Tests {
+    fn trace_lamps(&self, point: &SurfacePoint, index: usize, rays: &mut Vec<Option<(u32, bool)>>) -> Tests {
         let (mut sampler, mut tests) = (self.sampler(LAMP_SEED, index), Tests::default());
-        let (position, normal) = point.splat();
+        let (position, normal) = splat(point);
         let at = Receivers16 { position: &position, normal: &normal, learned: self.learned };
         for _ in 0..self.packets() {
             let (mut choices, mut u) = ([0.0; LANES], Vec2x16::default());
@@ -305,18 +285,12 @@ impl Wave<'_> {
 }
 
 /// Returns the segments from a point to sampled lamps, and the lanes whose light may arrive.
-fn segments(point: &LearningPoint, samples: &DirectSamples16) -> (Rays16, u16) {
+fn segments(point: &SurfacePoint, samples: &DirectSamples16) -> (Rays16, u16) {
     let (mut segments, mut lit) = (Rays16::default(), 0);
-    let LearningPoint { position: x, geometric_normal, .. } = *point;
     for lane in lanes_in(samples.useful()) {
-        let (direction, distance) = (samples.direction.get(lane), samples.distance[lane]);
-        let end = x + direction * distance;
-        let segment = match distance < f32::INFINITY {
-            true => shadow::segment(x, geometric_normal, end, samples.normal.get(lane)),
-            false => shadow::ray_from(x, geometric_normal, direction),
-        };
-        segments.set(lane, &segment);
-        lit |= u16::from(point.cos(direction) > 0.0) << lane;
+        let direction = samples.direction.get(lane);
+        segments.set(lane, &shadow::to_light(point.position, point.geometric_normal, samples, lane));
+        lit |= u16::from(weight(point, direction) > 0.0) << lane;
     }
     (segments, lit)
 }

@@ -36,6 +36,12 @@ impl Window {
         })
     }
 
+    /// Returns a film pixel by its number in a sequence that spreads evenly over the film.
+    pub fn spread_pixel(&self, number: u32, seed: u32) -> [u32; 2] {
+        let at = owen_sobol_2d(number, seed);
+        [0, 1].map(|axis| ((at[axis] * self.film[axis] as f32) as u32).min(self.film[axis] - 1))
+    }
+
     /// Returns the number of rendered pixels.
     pub fn pixel_count(&self) -> u64 {
         self.width as u64 * self.height as u64

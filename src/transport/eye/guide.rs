@@ -12,7 +12,6 @@ use crate::caustics::Caustics;
 use crate::paths::{Batch, Estimand, PathPolicy, PathStart, RayCounts, ScatteredEdges, start};
 use base::math::{Rgb, luminance};
 use base::parallel::ShortRuns;
-use base::sampling::owen_sobol_2d;
 use rayon::prelude::*;
 use world::World;
 use world::view::View;
@@ -57,15 +56,14 @@ pub(super) fn edges<'w, R: PathPolicy<'w>>(
         return edges;
     }
     let has_delta_lobes = world.specular.has_delta_lobes();
-    let film = view.window.film;
     let seed = settings.seed ^ SEED;
     // Sums: light by delta lobes, light by delta and glossy lobes, roots of all light, squares of the first.
     let sums_of = |first: u32| {
         let (mut batch, mut counts, mut sums) = (Batch::default(), RayCounts::default(), [0.0; 4]);
-        let paths = (first..first + BATCH).map(|sample| {
-            let at = owen_sobol_2d(sample, seed);
-            let pixel = |at: f32, length: u32| ((at * length as f32) as u32).min(length - 1);
-            PathStart { pixel: [pixel(at.x, film[0]), pixel(at.y, film[1])], sample, seed }
+        let paths = (first..first + BATCH).map(|sample| PathStart {
+            pixel: view.window.spread_pixel(sample, seed),
+            sample,
+            seed,
         });
         let finite = |light: Rgb| if light.is_finite() { f64::from(luminance(light)) } else { 0.0 };
         // Without delta lobes there is nothing to aim at.

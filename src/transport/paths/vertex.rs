@@ -321,10 +321,7 @@ fn segments(surfaces: &Surfaces16, lights: &DirectSamples16) -> Rays16 {
     let mut segments = Rays16::default();
     for i in 0..LANES {
         let (position, normal) = (surfaces.position.get(i), surfaces.normal.get(i));
-        let (direction, distance) = (lights.direction.get(i), lights.distance[i]);
-        let near = shadow::segment(position, normal, position + direction * distance, lights.normal.get(i));
-        let far = shadow::ray_from(position, normal, direction);
-        segments.set(i, &if distance < f32::INFINITY { near } else { far });
+        segments.set(i, &shadow::to_light(position, normal, lights, i));
     }
     segments
 }

@@ -126,22 +126,13 @@ impl IndirectLight<'_> {
         let at = near.receivers();
         let lights = world.emitters.sample_direct(at, &choice, &u, near.lanes);
         for lane in lanes_in(near.lanes & lights.useful()) {
-            let (direction, distance) = (lights.direction.get(lane), lights.distance[lane]);
+            let direction = lights.direction.get(lane);
             let (position, geometric) = (near.position.get(lane), near.geometric.get(lane));
             let cos = near.normal.get(lane).dot(direction);
             if !(cos > 0.0 && geometric.dot(direction) > 0.0) {
                 continue;
             }
-            let far = shadow::ray_from(position, geometric, direction);
-            let ray = match distance < f32::INFINITY {
-                true => shadow::segment(
-                    position,
-                    geometric,
-                    position + direction * distance,
-                    lights.normal.get(lane),
-                ),
-                false => far,
-            };
+            let ray = shadow::to_light(position, geometric, &lights, lane);
             let weight = if lights.delta[lane] != 0 {
                 1.0
             } else {

@@ -4,7 +4,7 @@ use super::area::AreaLight;
 use super::delta::DeltaEmitter;
 use super::environment::EnvironmentLight;
 use super::learned::Learned;
-use super::observed::{LightRays, Observed};
+use super::observed::Observed;
 use super::receivers::Receivers16;
 use super::select::EmitterChoice;
 use super::tree::EmitterBounds;
@@ -110,13 +110,17 @@ impl Emitters {
         self.areas.len() + self.deltas.len() >= MIN_HIDDEN
     }
 
-    /// Learns from what observers at some positions saw in some waves of rays.
-    pub fn learn(&self, observers: &[Vec3], waves: &[LightRays]) -> Learned {
-        let observed = Observed::new(observers, waves, self.choice.fewest_observers(observers.len()));
+    /// Returns observers at some positions, which have seen nothing yet.
+    pub fn observed_from(&self, positions: &[Vec3]) -> Observed {
+        Observed::new(positions, self.choice.fewest_observers(positions.len()))
+    }
+
+    /// Learns from what observers have seen.
+    pub fn learn(&self, observed: &Observed) -> Learned {
         Learned {
-            sky: self.environment.as_ref().map(|environment| environment.learn(&observed)),
-            emitters: self.choice.learn(&observed),
-            regions: observed.regions,
+            sky: self.environment.as_ref().map(|environment| environment.learn(observed)),
+            emitters: self.choice.learn(observed),
+            regions: observed.regions.clone(),
         }
     }
 

@@ -39,6 +39,6 @@ pub use environment::{EnvironmentLight, EnvironmentSample};
 pub use falloff::spot_falloff;
 pub use image::ImageLight;
 pub use learned::Learned;
-pub use observed::LightRays;
+pub use observed::{LightRays, Observed};
 pub use receivers::Receivers16;
 pub use regions::Regions;

@@ -4,7 +4,7 @@ use super::regions::Regions;
 use glam::Vec3;
 
 /// Maximum number of points in a region.
-const POINTS: usize = 16;
+const POINTS: usize = 32;
 
 /// Weight of what is known of a node in the nodes below it, in rays.
 pub const PRIOR: f32 = 16.0;
@@ -21,26 +21,31 @@ pub struct LightRays {
 }
 
 /// Regions of observers, and what these have seen.
-pub struct Observed<'a> {
+pub struct Observed {
     /// Regions.
-    pub regions: Regions,
+    pub(super) regions: Regions,
     /// Observers in each region.
     members: Vec<Vec<u32>>,
     /// Waves of rays from all observers.
-    pub waves: &'a [LightRays],
+    pub(super) waves: Vec<LightRays>,
     /// Number of observers.
     observers: usize,
 }
 
-impl Observed<'_> {
+impl Observed {
     /// Divides observers at some positions into regions of `fewest` observers or more.
-    pub fn new<'a>(observers: &[Vec3], waves: &'a [LightRays], fewest: usize) -> Observed<'a> {
+    pub(super) fn new(observers: &[Vec3], fewest: usize) -> Observed {
         let (regions, members) = Regions::new(observers, POINTS.max(fewest));
-        Observed { regions, members, waves, observers: observers.len() }
+        Observed { regions, members, waves: Vec::new(), observers: observers.len() }
+    }
+
+    /// Adds a wave of rays.
+    pub fn add(&mut self, rays: LightRays) {
+        self.waves.push(rays);
     }
 
     /// Lists the rays of one kind from a region's observers.
-    pub fn rays<'b, T: 'b>(
+    pub(super) fn rays<'b, T: 'b>(
         &'b self,
         region: usize,
         kind: impl Fn(&'b LightRays) -> &'b [T] + 'b,

@@ -91,7 +91,9 @@ fn learned(emitters: &Emitters) -> Learned {
             (ray % 3 > 0).then_some((lamp, is_seen(lamp as usize, x)))
         }));
     }
-    emitters.learn(&observers, &[rays])
+    let mut observed = emitters.observed_from(&observers);
+    observed.add(rays);
+    emitters.learn(&observed)
 }
 
 fn is_seen(lamp: usize, x: Vec3) -> bool {

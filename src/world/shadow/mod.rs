@@ -16,5 +16,5 @@ pub use cache::OccluderCacheSettings;
 pub use counts::ShadowCounts;
 pub use engine::Engine;
 pub use segment::{FAR_END, ULPS};
-pub use segment::{arriving, ray_from, segment};
+pub use segment::{arriving, ray_from, segment, to_light};
 pub use settings::ShadowSettings;

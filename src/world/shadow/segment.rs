@@ -6,6 +6,7 @@
 //! part of the length counts as a coordinate there.
 
 use crate::World;
+use crate::light::DirectSamples16;
 use base::math::Rgb;
 use embree::Ray;
 use glam::Vec3;
@@ -45,6 +46,15 @@ pub fn segment(a: Vec3, a_normal: Vec3, b: Vec3, b_normal: Vec3) -> Ray {
     let extent = (FAR_END * direction.abs().max_element()).max(f32::MIN_POSITIVE);
     let target = offset_from(b, b_normal, -direction, extent);
     Ray { origin, t_near: 0.0, direction: target - origin, t_far: 1.0 }
+}
+
+/// Returns the segment from a surface point to the light sampled in a lane; a ray if the light is infinitely far.
+#[inline(always)]
+pub fn to_light(position: Vec3, normal: Vec3, lights: &DirectSamples16, lane: usize) -> Ray {
+    let (direction, distance) = (lights.direction.get(lane), lights.distance[lane]);
+    let near = segment(position, normal, position + direction * distance, lights.normal.get(lane));
+    let far = ray_from(position, normal, direction);
+    if distance < f32::INFINITY { near } else { far }
 }
 
 /// Returns the share of the light that arrives along a segment: 0 if it is occluded or passes more than `most` sheets,

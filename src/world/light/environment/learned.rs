@@ -12,6 +12,10 @@ use rayon::prelude::*;
 /// Share of the samples that are by flux alone.
 const BY_FLUX: f32 = 0.1;
 
+/// Number of rays, among those known of all regions beforehand, that find full light in a tile. Tiles that no ray has
+/// found lit keep some samples.
+const UNSEEN: f32 = 1.0;
+
 /// Distributions over tiles by region.
 #[derive(Clone, Debug)]
 pub struct LearnedSky {
@@ -41,7 +45,7 @@ impl LearnedSky {
                 *rays += 1.0;
             }
         };
-        let means = observed.regions.means(add, PRIOR, &vec![1.0; tiles.len()]);
+        let means = observed.regions.means(add, PRIOR, &vec![UNSEEN / PRIOR; tiles.len()]);
         let table = |means: &Vec<f32>| {
             let weight = |(tile, square): (&Tile, &f32)| tile.flux * square.sqrt();
             TileTable::new(tiles, &tiles.iter().zip(means).map(weight).collect::<Vec<_>>(), BY_FLUX)

@@ -105,7 +105,7 @@ fn directions_are_drawn_with_the_densities_told_even_in_tiles_and_uneven_ones() 
 
 #[test]
 fn what_is_learned_of_a_window_is_where_most_samples_go_and_all_directions_keep_some() {
-    const PACKETS: usize = 32;
+    const PACKETS: usize = 64;
     let light = EnvironmentLight::new(Some(&Environment::Map(two_parts())), &[]).unwrap();
     let open = |d: Vec3| d.x > 0.5;
     // Two places: light from one side at the one, none at the other.
@@ -128,8 +128,8 @@ fn what_is_learned_of_a_window_is_where_most_samples_go_and_all_directions_keep_
             );
         }
     }
-    let waves = [rays];
-    let observed = Observed::new(&observers, &waves, 1);
+    let mut observed = Observed::new(&observers, 16);
+    observed.add(rays);
     let learned = light.learn(&observed);
     let share = |x: f32| {
         let at = Vec3x16::splat(Vec3::new(x, 0.06, 0.0));
@@ -153,8 +153,8 @@ fn what_is_learned_of_a_window_is_where_most_samples_go_and_all_directions_keep_
         (0..1 << 14).filter(|i| open(light.sample(owen_sobol_2d(*i, 5)).unwrap().direction)).count();
     let unlearned = unlearned as f32 / (1 << 14) as f32;
     assert!(share(0.0) > 0.7 && unlearned < 0.25, "{} {unlearned}", share(0.0));
-    // A place without any light of the sky takes the mean of all places, of which few rays tell.
-    assert!(share(10.0) > 1.4 * unlearned);
+    // A place without any light of the sky has the mean of all places.
+    assert!(share(10.0) > 0.65);
 }
 
 #[test]
