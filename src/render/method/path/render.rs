@@ -18,7 +18,6 @@ use base::progress::Control;
 use base::stats::Stage;
 use rayon::prelude::*;
 use transport::eye::{PackedGuide, PackedGuides};
-use transport::learning::LearnedLight;
 use transport::paths::{Batch, Estimand};
 use world::World;
 use world::view::View;
@@ -43,7 +42,7 @@ impl Renderer for Settings {
     }
 
     fn render(&self, world: &World, lights: &LightStore, view: &View, control: &Control) -> Output {
-        self.image(world, &lights.learned(world, view, self.spp, control), None, view, control)
+        self.image(world, lights, None, view, control)
     }
 
     fn estimand(&self) -> Estimand {
@@ -93,7 +92,7 @@ impl Resumes for Settings {
         view: &View,
         control: &Control,
     ) -> Output {
-        self.image(world, &lights.learned(world, view, self.spp, control), Some(partial), view, control)
+        self.image(world, lights, Some(partial), view, control)
     }
 }
 
@@ -102,12 +101,13 @@ impl Settings {
     fn image(
         &self,
         world: &World,
-        known: &LearnedLight,
+        lights: &LightStore,
         partial: Option<&PartialImage>,
         view: &View,
         control: &Control,
     ) -> Output {
         let mut tally = Tally::default();
+        let known = tally.time(Stage::Render, || lights.learned(world, view, self.spp, control));
         tally.rays(known.counts.rays);
         tally.shadow_rays("Rays/shadow", known.counts.shadow_rays);
         let tile = |i| partial.and_then(|p| PathTile::of(p, view, self.spp, i)).unwrap_or_default();
