@@ -15,7 +15,7 @@ use world::shadow::ShadowSettings;
 /// Samples of a cut at a point without records, times the cut's ε and the pixel's relative error of direct light.
 ///
 /// Variance times cost is least if the samples are in inverse proportion to that error.
-const CUT_SAMPLES: f32 = 0.3;
+const CUT_SAMPLES: f32 = 0.45;
 /// Minimum number of samples of a cut.
 const MIN_CUT_SAMPLES: f32 = 4.0;
 

@@ -1,33 +1,40 @@
 //! Light of a packet's points from samples of a coarse cut, for images that are noisy anyway. It takes a fraction of
 //! the shadow rays of a cut, and its errors are noise, not a pattern.
 //!
-//! Paper: Yuksel, *Stochastic Lightcuts*, 2019: representatives are sampled anew for each point.
+//! Papers: Yuksel, *Stochastic Lightcuts*, 2019: representatives are sampled anew for each point; Rath et al., *EARS:
+//! Efficiency-Aware Russian Roulette and Splitting*, 2022: numbers of samples.
 //!
 //! A point samples clusters in proportion to their unshadowed contributions, or to a share of their bounds if that is
 //! more. From there it descends a few levels of the tree, in proportion to the members' intensities. The mean is the
 //! light of all VPLs, limited as in a cut, except that the nodes where the descent ends have fixed
 //! representatives.
 //!
-//! Errors: nodes above leaves are not clamped. So at points very close to a light, light remains that a cut would
-//! clamp.
+//! The first samples of all points tell how much of the light is visible. Each point takes further samples in
+//! proportion to the standard deviation of one sample, relative to its light. A dark corner so has many.
+//!
+//! Errors: the luminance of nodes above leaves is not limited. So at points very close to a light, light remains that a
+//! cut would clamp.
 //!
 //! Deviations: clusters share a number of samples, instead of having one each. The cut is that of sixteen points, and
-//! all VPLs count as visible in it. Rays of all points to a cluster are traced together, since they are coherent.
+//! all VPLs count as visible in it. Rays of all points to a cluster are traced together, since they are coherent. A
+//! point learns from the other points' samples alone, so that its light is unbiased.
 
+mod descent;
 #[cfg(test)]
 mod tests;
 
+use self::descent::{Descent, Pending, Sample};
 use super::refine::PacketRefinement;
 use super::{Clamps, Lightcut, PacketSum, ReceiverPacket, luminances};
 use crate::lightcut::clamp::{DOMINANT, MAX_STEPS, frozen_luminance, is_weak};
 use crate::lightcut::{CutCounts, CutSettings, Transfer, Visibility, to_vpl};
-use crate::lights::LightNode;
-use base::math::{F32x16, LANES, Rgb, V3, Vec3x16, first_lanes, lanes_in, luminance};
+use crate::lights::Origin;
+use base::math::{F32x16, LANES, Rgb, V3, lanes_in, luminance};
 use base::sampling::{hash, unit};
-use embree::{Ray, Rays16};
+use embree::Rays16;
 
 /// ε of the coarse cut.
-const EPSILON: f32 = 0.3;
+const EPSILON: f32 = 0.15;
 
 /// Share of a cluster's expected error that counts as its light if its representative gives less.
 const DOUBT: f32 = 0.3;
@@ -35,8 +42,14 @@ const DOUBT: f32 = 0.3;
 /// Maximum number of levels that a sample descends below its cluster.
 const LEVELS: u32 = 5;
 
-/// Maximum mean number of samples per point; with more, a cut takes less time.
+/// Maximum number of samples per point; if the mean is higher, a cut takes less time.
 const MAX_SAMPLES: f32 = 150.0;
+
+/// Share of the samples that are taken before it is known how much light is visible.
+const FIRST: f32 = 0.5;
+
+/// Range of the visible share of the light.
+const VISIBLE: [f32; 2] = [0.02, 0.95];
 
 /// Ratio of wanted samples to [`MAX_SAMPLES`] above which no coarse cut is made.
 const HOPELESS: f32 = 3.0;
@@ -44,8 +57,8 @@ const HOPELESS: f32 = 3.0;
 /// Numbers of samples.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Samples {
-    /// Number at a point that reflects no other light; at other points, the number is in proportion to the share of the
-    /// gathered light.
+    /// Number at a point that reflects no other light, half of which is visible; at other points, the number is in
+    /// proportion to the standard deviation of a sample over all light.
     pub whole: f32,
     /// Minimum number.
     pub least: f32,
@@ -69,7 +82,7 @@ pub struct SampledCut {
     /// Importance of each cluster in each lane, as luminance.
     importance: Vec<F32x16>,
     /// Samples of all lanes, before their VPLs are read.
-    drawn: Vec<Drawn>,
+    descents: Vec<Descent>,
     /// Samples whose VPLs are visible, by lane.
     visible: [Vec<Sample>; LANES],
     /// Work done so far.
@@ -85,57 +98,13 @@ impl Visibility for AllVisible {
     }
 }
 
-/// Sample whose VPL is visible.
+/// Numbers of samples per importance, by lane.
 #[derive(Clone, Copy)]
-struct Sample {
-    light: Rgb,
-    /// Inverse of the density for samples of leaves that may be clamped; infinite for others.
-    factor: f32,
-    /// Geometry term of a leaf that may be clamped; 0 for others.
-    geometry: f32,
-}
-
-/// Sample on its way from a cluster to a descendant.
-#[derive(Clone, Copy)]
-struct Drawn {
-    /// Node reached.
-    node: u32,
-    /// Random number that chooses the descendant.
-    u: f32,
-    /// Number of samples per contribution of the cluster.
-    of_cluster: f32,
-    /// Probability of the node among the cluster's descendants.
-    density: f32,
-    /// Lane of the sample's point.
-    lane: u8,
-}
-
-/// Samples whose rays have not been traced yet.
-#[derive(Default)]
-struct Pending {
-    rays: Rays16,
-    light: Vec3x16,
-    factors: F32x16,
-    geometries: F32x16,
-    /// Maximum numbers of sheets that the samples' light passes (see [`crate::lightcut::Receiver::sheets`]).
-    sheets: [Option<u32>; LANES],
-    /// Lanes of the samples' points.
-    points: [u8; LANES],
-    count: usize,
-}
-
-/// Position of a point's next sample on a line along which clusters follow one another, as long as their importance.
-#[derive(Clone, Copy, Default)]
-struct SampleCursor {
-    /// Place of the next sample.
-    next: f32,
-    /// Distance between samples.
-    step: f32,
-    /// End of the clusters so far.
-    reached: f32,
-    /// Number of samples so far.
-    number: u32,
-    seed: u32,
+struct Rates {
+    /// Samples to take.
+    next: F32x16,
+    /// All samples, with these.
+    all: F32x16,
 }
 
 impl Samples {
@@ -174,14 +143,18 @@ impl SampledCut {
         let numbers = samples.of(receivers, &totals)?;
         self.counts.capped += receivers.len() as u64 * u64::from(capped);
         self.counts.cuts += receivers.len() as u64;
-        let mut cursors = [SampleCursor::default(); LANES];
+        lanes_in(receivers.valid).for_each(|lane| self.visible[lane].clear());
+        let first = per_importance(&numbers.map(|number| FIRST * number), &totals);
+        self.sample(transfer, visibility, receivers, &Rates { next: first, all: first }, seed);
+        let further = per_importance(&self.further(receivers, &totals, &numbers, samples), &totals);
+        let all: F32x16 = std::array::from_fn(|lane| first[lane] + further[lane]);
         for lane in lanes_in(receivers.valid) {
-            self.visible[lane].clear();
-            let (step, seed) = (totals[lane] / numbers[lane], hash(seed, lane as u32));
-            cursors[lane] =
-                SampleCursor { next: step * unit(hash(seed, 0)), step, seed, ..SampleCursor::default() };
+            let share = first[lane] / all[lane];
+            for sample in &mut self.visible[lane] {
+                (sample.light, sample.factor) = (sample.light * share, sample.factor * share);
+            }
         }
-        self.sample(transfer, visibility, receivers, &mut cursors);
+        self.sample(transfer, visibility, receivers, &Rates { next: further, all }, hash(seed, 1));
         let mut sum = PacketSum::default();
         for lane in lanes_in(receivers.valid) {
             sum.radiance[lane] = self.visible[lane].iter().map(|sample| sample.light).sum();
@@ -210,18 +183,46 @@ impl SampledCut {
         totals
     }
 
-    /// Takes the samples of all lanes, one for each step of importance.
+    /// Returns the numbers of samples by lane to take after the first of `numbers`. The product of time and squared
+    /// error is least if a point has as many samples as the standard deviation of one over all light.
+    fn further(
+        &self,
+        receivers: &ReceiverPacket,
+        totals: &F32x16,
+        numbers: &F32x16,
+        samples: &Samples,
+    ) -> F32x16 {
+        let mut found = [0.0; LANES];
+        for lane in lanes_in(receivers.valid) {
+            found[lane] = self.visible[lane].iter().map(|sample| luminance(sample.light)).sum();
+        }
+        let [found_by_all, total_of_all] = [&found, totals].map(|lanes| lanes.iter().sum::<f32>());
+        let mut further = [0.0; LANES];
+        for lane in lanes_in(receivers.valid) {
+            let total = totals[lane];
+            let visible = (found_by_all - found[lane]) / (total_of_all - total);
+            let visible = if visible.is_finite() { visible.clamp(VISIBLE[0], VISIBLE[1]) } else { 0.5 };
+            let deviation = (visible * (1.0 - visible)).sqrt() * total;
+            let wanted = samples.whole * deviation / (receivers.baseline[lane] + visible * total);
+            let more = wanted.clamp(samples.least, MAX_SAMPLES) - FIRST * numbers[lane];
+            further[lane] = if more >= 1.0 { more } else { 0.0 };
+        }
+        further
+    }
+
+    /// Takes samples of all lanes at the `next` rates.
     fn sample<V: Visibility>(
         &mut self,
         transfer: &Transfer,
         visibility: &V,
         receivers: &ReceiverPacket,
-        cursors: &mut [SampleCursor; LANES],
+        rates: &Rates,
+        seed: u32,
     ) {
-        self.draw(receivers, cursors);
+        self.choose(receivers, rates, seed);
         let trees = transfer.trees;
         let mut pending = Pending::default();
-        for group in self.drawn.chunks_mut(LANES) {
+        for group in self.descents.chunks_mut(LANES) {
             // The samples of a group wait for memory together, because the trees exceed the caches.
             for _ in 0..LEVELS {
                 group.iter_mut().for_each(|sample| sample.descend(&trees.nodes));
@@ -239,14 +240,13 @@ impl SampledCut {
                     continue;
                 }
                 let ray = to_vpl(receiver.position(), receiver.geometric_normal(), vpl, node.kind());
-                let (factor, geometry) = match is_weak(node) {
-                    true => {
-                        let (x, normal) = receiver.place();
-                        let (x, normal) = (V3::<f32>::splat(x), V3::splat(normal));
-                        (density.recip(), transfer.geometry_term(x, normal, vpl, node.kind()))
-                    }
-                    false => (f32::INFINITY, 0.0),
+                let (x, normal) = receiver.place();
+                let (x, normal) = (V3::<f32>::splat(x), V3::splat(normal));
+                let geometry = match node.origin() {
+                    Origin::Indirect => transfer.geometry_term(x, normal, vpl, node.kind()),
+                    Origin::Direct => 0.0,
                 };
+                let factor = if is_weak(node) { density.recip() } else { f32::INFINITY };
                 let sample = Sample { light: response * (node.intensity / density), factor, geometry };
                 let (_, before) = trees.representative(node);
                 pending.sheets[pending.count] = receiver.sheets(before);
@@ -256,28 +256,30 @@ impl SampledCut {
             }
         }
         pending.trace(visibility, &mut self.visible, &mut self.counts);
-        self.counts.clusters += self.drawn.len() as u64;
+        self.counts.clusters += self.descents.len() as u64;
     }
 
-    /// Draws the clusters and random numbers of all samples, in the order of the clusters.
-    fn draw(&mut self, receivers: &ReceiverPacket, cursors: &mut [SampleCursor; LANES]) {
-        self.drawn.clear();
-        // If a total is too small to be divided, its step is 0 and it gives no light.
-        let lanes =
-            lanes_in(receivers.valid).filter(|lane| cursors[*lane].step > 0.0).fold(0, |l, i| l | 1 << i);
+    /// Chooses the clusters and random numbers of samples, in the order of the clusters. A lane's clusters follow one
+    /// another on a line, as long as their numbers of samples.
+    fn choose(&mut self, receivers: &ReceiverPacket, rates: &Rates, seed: u32) {
+        self.descents.clear();
+        let seeds: [u32; LANES] = std::array::from_fn(|lane| hash(seed, lane as u32));
+        let mut next = seeds.map(|seed| unit(hash(seed, 0)));
+        let (mut reached, mut numbers) = ([0.0; LANES], [0; LANES]);
         for (cluster, importance) in self.cut.clusters.iter().zip(&self.importance) {
-            for lane in lanes_in(lanes) {
-                let cursor = &mut cursors[lane];
-                cursor.reached += importance[lane];
-                while cursor.next < cursor.reached {
-                    cursor.next += cursor.step;
-                    cursor.number += 1;
-                    let u = unit(hash(cursor.seed, cursor.number));
-                    let of_cluster = importance[lane] / cursor.step;
-                    self.drawn.push(Drawn {
+            let mut due = 0;
+            for lane in 0..LANES {
+                reached[lane] += importance[lane] * rates.next[lane];
+                due |= u16::from(next[lane] < reached[lane]) << lane;
+            }
+            for lane in lanes_in(due & receivers.valid) {
+                while next[lane] < reached[lane] {
+                    next[lane] += 1.0;
+                    numbers[lane] += 1;
+                    self.descents.push(Descent {
                         node: cluster.node,
-                        u,
-                        of_cluster,
+                        u: unit(hash(seeds[lane], numbers[lane])),
+                        of_cluster: importance[lane] * rates.all[lane],
                         density: 1.0,
                         lane: lane as u8,
                     });
@@ -313,55 +315,9 @@ impl SampledCut {
     }
 }
 
-impl Pending {
-    /// Adds a sample of the point in `lane`; returns true if the packet is full.
-    #[inline]
-    fn push(&mut self, ray: &Ray, sample: Sample, lane: usize) -> bool {
-        self.rays.set(self.count, ray);
-        self.light.set(self.count, sample.light);
-        self.factors[self.count] = sample.factor;
-        self.geometries[self.count] = sample.geometry;
-        self.points[self.count] = lane as u8;
-        self.count += 1;
-        self.count == LANES
-    }
-
-    /// Traces the rays, and keeps the samples whose VPLs are visible.
-    fn trace<V: Visibility>(
-        &mut self,
-        visibility: &V,
-        visible: &mut [Vec<Sample>; LANES],
-        counts: &mut CutCounts,
-    ) {
-        let count = std::mem::take(&mut self.count);
-        if count == 0 {
-            return;
-        }
-        counts.rays += count as u64;
-        counts.packets += 1;
-        let free = visibility.visible16(&self.rays, first_lanes(count), None);
-        visibility.attenuate16(&self.rays, free, |i| self.sheets[i], &mut self.light);
-        for i in lanes_in(free) {
-            let (factor, geometry) = (self.factors[i], self.geometries[i]);
-            let sample = Sample { light: self.light.get(i), factor, geometry };
-            visible[usize::from(self.points[i])].push(sample);
-        }
-    }
-}
-
-impl Drawn {
-    /// Descends to a child, in proportion to luminance; stays at a leaf.
-    #[inline]
-    fn descend(&mut self, nodes: &[LightNode]) {
-        let Some(left) = nodes[self.node as usize].children() else { return };
-        let [of_left, of_right] = [left, left + 1].map(|child| luminance(nodes[child as usize].intensity));
-        let p = of_left / (of_left + of_right);
-        if self.u < p {
-            (self.node, self.u, self.density) = (left, self.u / p, self.density * p);
-        } else {
-            // Rounding must not make the number 1, which would choose a right child of probability 0.
-            let rest = ((self.u - p) / (1.0 - p)).min(1.0 - f32::EPSILON);
-            (self.node, self.u, self.density) = (left + 1, rest, self.density * (1.0 - p));
-        }
-    }
+/// Returns numbers of samples over the importance of all clusters. If a total is too small to be divided, there are no
+/// samples, and no light.
+fn per_importance(numbers: &F32x16, totals: &F32x16) -> F32x16 {
+    let rate = |lane: usize| Some(numbers[lane] / totals[lane]).filter(|rate| rate.is_finite());
+    std::array::from_fn(|lane| rate(lane).unwrap_or(0.0))
 }

@@ -116,7 +116,7 @@ fn light_too_faint_to_divide_among_samples_is_none() {
 }
 
 #[test]
-fn what_is_drawn_stands_for_all_light() {
+fn a_sample_stands_for_all_light_of_its_cluster() {
     // A right child that has all but the last bits of the light, below one that has half of it.
     let mut numbers = RandomNumbers(9);
     let mut set = room(4, &mut numbers);
@@ -125,10 +125,10 @@ fn what_is_drawn_stands_for_all_light() {
     }
     let trees = LightTrees::build(&[set], Vec::new(), 1.7, Family::Divisive, &Control::new());
     for u in [0.0, 0.25, 0.499_999_97, 0.5, 0.75, 0.999_999_94] {
-        let mut drawn = Drawn { node: trees.roots[0], u, of_cluster: 1.0, density: 1.0, lane: 0 };
-        (0..LEVELS).for_each(|_| drawn.descend(&trees.nodes));
-        let node = &trees.nodes[drawn.node as usize];
-        let of_all = luminance(node.intensity) / drawn.density;
+        let mut sample = Descent { node: trees.roots[0], u, of_cluster: 1.0, density: 1.0, lane: 0 };
+        (0..LEVELS).for_each(|_| sample.descend(&trees.nodes));
+        let node = &trees.nodes[sample.node as usize];
+        let of_all = luminance(node.intensity) / sample.density;
         assert!(node.is_leaf() && (of_all - 2.0).abs() < 1e-3, "{u}: {of_all}");
     }
 }
@@ -157,4 +157,41 @@ fn samples_are_as_many_as_the_light_is_worth() {
     // Where a cut takes less time.
     assert_eq!((number(0.0, 200.0), number(0.0, f32::INFINITY), number(0.0, f32::NAN)), (None, None, None));
     assert!(number(10.0 * total, 200.0).is_some());
+}
+
+/// Blocks light from all but a share of the directions.
+struct Screen(f32);
+
+impl Visibility for Screen {
+    fn visible16(&self, rays: &Rays16, lanes: u16, _: Option<u32>) -> u16 {
+        let is_free = |&lane: &usize| {
+            let direction = rays.get(lane).direction;
+            direction.z.atan2(direction.x).abs() <= self.0 * std::f32::consts::PI
+        };
+        lanes_in(lanes).filter(is_free).fold(0, |mask, lane| mask | 1 << lane)
+    }
+}
+
+#[test]
+fn points_that_see_less_of_the_light_take_more_samples() {
+    let mut numbers = RandomNumbers(7);
+    let trees =
+        LightTrees::build(&[room(2000, &mut numbers)], Vec::new(), 1.7, Family::Divisive, &Control::new());
+    let transfer = Transfer::new(&trees, 1.7);
+    let frame = Frame::from_normal(Vec3::Y);
+    let mut points = ReceiverPacket::new();
+    let at = |i: usize| Vec3::new(0.4 + 0.01 * i as f32, 0.3, 0.5);
+    points.set((0..16).map(|i| Receiver::irradiance(at(i), Vec3::Y, &frame)));
+    let samples = Samples { whole: 40.0, least: 4.0 };
+    let number = |visible: f32| {
+        let mut cut = SampledCut::default();
+        let settings = SampledSettings { cut: &SETTINGS, samples: &samples, seed: 1 };
+        cut.gather(&transfer, &Screen(visible), &points, &settings).expect("few samples");
+        cut.counts.clusters as f32 / 16.0
+    };
+    let found = [0.1, 0.5, 0.9].map(number);
+    // √((1 - v) / v) times the number wanted, but for the distribution of the light.
+    for (found, expected) in found.into_iter().zip([120.0, 40.0, 20.0]) {
+        assert!((0.75 * expected..1.4 * expected).contains(&found), "{found} for {expected}");
+    }
 }
