@@ -1,8 +1,7 @@
-//! Tests: the page lists kinds of images and channels of OpenEXR files, and each is read or refused as it says.
+//! Tests: kinds of images and channels of OpenEXR files are read or refused, as the page says.
 
 use super::decode::{Channel, DecodedImage, decode};
 use super::error::Location;
-use super::statements::{Fate, Statement, assert_page_lists};
 use base::math::Rgb;
 use exr::meta::attribute::{Chromaticities, IntegerBounds};
 use exr::prelude::{AnyChannel, AnyChannels, FlatSamples, Image, Layer, Vec2, WritableImage};
@@ -10,54 +9,8 @@ use image::{DynamicImage, ImageFormat};
 use std::io::Cursor;
 use std::path::Path;
 
-const fn new(name: &'static str, fate: Fate, note: &'static str) -> Statement {
-    Statement { name, fate, note }
-}
-
-/// Kinds of images.
-const PICTURES: &[Statement] = &[
-    new("PNG of 8 bits", Fate::Read, "sRGB unless raw; alpha is dropped"),
-    new("PNG of 16 bits", Fate::Read, "sRGB unless raw; alpha is dropped"),
-    new("PNG of grey", Fate::Read, "one value for three colours"),
-    new("PNG with a palette", Fate::Read, "by its colours"),
-    new("JPEG", Fate::Read, "sRGB unless raw"),
-    new("JPEG of CMYK", Fate::Read, "with a marker of Adobe, each ink times the black, without a profile"),
-    new("WebP", Fate::Read, "sRGB unless raw; alpha is dropped"),
-    new("BMP", Fate::Read, "sRGB unless raw"),
-    new("TGA", Fate::Read, "sRGB unless raw; by its extension, since it has no signature"),
-    new("Radiance HDR", Fate::Read, "linear; with either signature, and with CR LF in the head"),
-    new("OpenEXR", Fate::Read, "linear; see the next table"),
-    new("GIF", Fate::Refused, "convert it to PNG"),
-    new("TIFF", Fate::Refused, "convert it to PNG or OpenEXR"),
-    new("DDS", Fate::Refused, "convert it to PNG"),
-    new("KTX2", Fate::Refused, "convert it to PNG"),
-];
-
-/// Channels, attributes and parts of OpenEXR files.
-const EXR: &[Statement] = &[
-    new("R", Fate::Read, "with `G` and `B`: the image, if no layer precedes the names"),
-    new("Combined.R", Fate::Read, "else the layer `Combined`, `beauty`, `rgba`, `rgb`, `color` or `colour`"),
-    new("Y", Fate::Read, "else the luminance without a layer, as grey; `L` as well"),
-    new("NAME.R", Fate::Read, "else the colour of the only layer that has one"),
-    new("RY", Fate::Read, "with `Y` and `BY`: luminance and chroma, interpolated linearly where subsampled"),
-    new("view", Fate::Read, "the default view of stereo files: the first view of `multiView` or of a part"),
-    new("A", Fate::NoEffect, "alpha is dropped"),
-    new("NAME.X", Fate::NoEffect, "further channels, layers and parts"),
-    new("several layers", Fate::Refused, "no layer is clearly the image; the message lists all channels"),
-    new("displayWindow", Fate::Read, "the image; black where it has no data"),
-    new("chromaticities", Fate::Read, "converted to Rec. 709 unless raw; colours beyond it are clipped"),
-    new("deep data", Fate::Refused, "if they are the image; flatten them"),
-    new("subsampling under B44", Fate::Refused, "save with another compression"),
-];
-
 fn read(bytes: &[u8], name: &str) -> Option<DecodedImage> {
     decode(bytes, Channel::Colour, Path::new(name), &Location::file(Path::new("s.toml"))).ok()
-}
-
-#[test]
-fn the_page_lists_the_kinds_of_pictures_and_the_channels() {
-    assert_page_lists("Images", PICTURES);
-    assert_page_lists("OpenEXR", EXR);
 }
 
 /// A square of one colour in a format.

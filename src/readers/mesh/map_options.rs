@@ -3,9 +3,8 @@
 //! Options stand before or behind the name. Both the numbers of an option and the words of a name vary in number, so
 //! that reading counts of which the file exists.
 
-use super::mtl_statements::MAP_OPTIONS;
 use super::wavefront::{name, readings};
-use crate::statements::{Fate, Statement};
+use crate::statements::{Fate, Statement, table};
 use std::path::PathBuf;
 
 /// Channel of an image that a number comes from (`-imfchan`).
@@ -104,8 +103,13 @@ fn reading(text: &str, find: impl Fn(&str) -> Option<PathBuf>) -> Result<Option<
     Ok(Some((file, read)))
 }
 
+/// Returns the options of maps.
+pub(crate) fn options() -> &'static [Statement] {
+    table("Options of MTL maps")
+}
+
 fn option(word: &str) -> Option<&'static Statement> {
-    MAP_OPTIONS.iter().find(|option| option.name.eq_ignore_ascii_case(word))
+    options().iter().find(|option| option.name.eq_ignore_ascii_case(word))
 }
 
 fn is_number(word: &str) -> bool {
@@ -266,7 +270,7 @@ mod tests {
             "-type" => "sphere",
             _ => "2",
         };
-        for option in MAP_OPTIONS {
+        for option in super::options() {
             let (file, options) = read(&format!("{} {} tile.png", option.name, value(option.name))).unwrap();
             assert!(file.is_ok());
             assert_eq!(

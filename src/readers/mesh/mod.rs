@@ -16,7 +16,6 @@ mod large_polygon;
 pub mod map_options;
 pub mod material_parts;
 pub mod mtl;
-pub(crate) mod mtl_statements;
 mod numerals;
 pub mod obj;
 pub mod obj_references;
@@ -36,7 +35,6 @@ mod smooth;
 pub mod stl;
 mod stl_colours;
 mod stl_soup;
-mod stl_statements;
 mod stl_text;
 pub(crate) mod wavefront;
 

@@ -6,15 +6,19 @@
 
 use super::encodings;
 use super::faults::{MAX_CODE, are_codes, note_of_codes};
-use super::mtl_statements::listed;
 use super::wavefront::{self, numbers, shown, split_word, statements, values, words};
 use crate::decode::srgb_to_linear;
 use crate::error::{Location, SceneError, Warning};
-use crate::statements::{Fate, Statement};
+use crate::statements::{Fate, Statement, listed, table};
 use base::math::Rgb;
 use glam::{DMat3, DVec3};
 use std::collections::BTreeMap;
 use std::path::Path;
+
+/// Returns the statements of MTL files.
+pub(crate) fn mtl() -> &'static [Statement] {
+    table("MTL")
+}
 
 /// A map statement: its text with options, and its line.
 #[derive(Clone, Debug, PartialEq)]
@@ -174,7 +178,9 @@ impl ClassicMaterial {
     }
 
     fn read(&mut self, word: &[u8], rest: &[u8], line: u32) -> Result<(), String> {
-        let Some(statement) = listed(&String::from_utf8_lossy(word)) else {
+        let spelled = |statement: &&Statement| statement.name.as_bytes().eq_ignore_ascii_case(word);
+        let exact = listed(mtl(), &String::from_utf8_lossy(word));
+        let Some(statement) = exact.or_else(|| mtl().iter().find(spelled)) else {
             self.lacks(format!("the unknown statement \"{}\"", shown(word)), "it is left out", line);
             return Ok(());
         };
@@ -372,7 +378,7 @@ mod tests {
             let of = |u: Unmodelled| format!("{}: {}", u.line, u.what);
             read_text(&format!("newmtl a\n{text}\n")).remove(0).unmodelled.into_iter().map(of).collect()
         };
-        for statement in super::super::mtl_statements::MTL {
+        for statement in mtl() {
             let said = named(&format!("{} 0.5", statement.name));
             let is_named = statement.fate == Fate::Named && statement.name != "map_Ka";
             let expected = if is_named { vec![format!("2: {}", statement.name)] } else { vec![] };

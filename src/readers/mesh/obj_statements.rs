@@ -2,65 +2,13 @@
 
 use super::wavefront::{name, shown};
 use crate::error::{Location, Warning};
-use crate::statements::{Fate, Statement, fate};
+use crate::statements::{Fate, Statement, fate, listed, table};
 use std::path::Path;
 
-const fn statement(name: &'static str, fate: Fate, note: &'static str) -> Statement {
-    Statement { name, fate, note }
+/// Returns the statements of OBJ files. Those that say `off` or `0` have no effect.
+fn obj() -> &'static [Statement] {
+    table("OBJ")
 }
-
-/// Statements of OBJ files. Those that say `off` or `0` have no effect.
-pub(super) const OBJ: &[Statement] = &[
-    statement("v", Fate::Read, "position; the last three of six numbers are a colour"),
-    statement("vn", Fate::Read, "normal"),
-    statement("vt", Fate::Read, "texture coordinates; the third has no effect"),
-    statement("f", Fate::Read, "polygon"),
-    statement("fo", Fate::Read, "polygon, as an old name of `f`"),
-    statement("o", Fate::Read, "object, chosen by `group` and `except`"),
-    statement("g", Fate::Read, "groups, chosen by `group` and `except`"),
-    statement("usemtl", Fate::Read, "material of the faces that follow"),
-    statement(
-        "mtllib",
-        Fate::Read,
-        "material libraries: several names, or names with spaces, by which files exist",
-    ),
-    statement("s", Fate::Named, "faces are flat if the file has no normals; else normals count"),
-    statement("l", Fate::Named, "lines are left out"),
-    statement("p", Fate::Named, "points are left out"),
-    statement("surf", Fate::Named, "free-form surfaces are left out; export polygons"),
-    statement("curv", Fate::Named, "curves are left out"),
-    statement("bsp", Fate::Named, "patches are left out; export polygons"),
-    statement("bzp", Fate::Named, "patches are left out; export polygons"),
-    statement("cdp", Fate::Named, "patches are left out; export polygons"),
-    statement("cdc", Fate::Named, "curves are left out"),
-    statement("call", Fate::Named, "the other file is left out"),
-    statement("csh", Fate::Named, "no command is run"),
-    statement("lod", Fate::Named, "elements of every level of detail are there"),
-    statement("usemap", Fate::Named, "textures come from the materials"),
-    statement("maplib", Fate::Named, "textures come from the materials"),
-    statement("shadow_obj", Fate::Named, "the mesh casts its own shadow"),
-    statement("trace_obj", Fate::Named, "the mesh is reflected as it is"),
-    statement("bevel", Fate::Named, "edges are sharp"),
-    statement("c_interp", Fate::Named, "colours come from the materials of the faces"),
-    statement("d_interp", Fate::Named, "opacities come from the materials of the faces"),
-    statement("mg", Fate::NoEffect, "merging of free-form surfaces"),
-    statement("vp", Fate::NoEffect, "points of free-form curves"),
-    statement("cstype", Fate::NoEffect, "kind of free-form curves and surfaces"),
-    statement("deg", Fate::NoEffect, "degree of free-form curves and surfaces"),
-    statement("bmat", Fate::NoEffect, "basis of free-form curves and surfaces"),
-    statement("step", Fate::NoEffect, "steps of free-form curves and surfaces"),
-    statement("res", Fate::NoEffect, "divisions of patches"),
-    statement("parm", Fate::NoEffect, "part of a free-form surface"),
-    statement("trim", Fate::NoEffect, "part of a free-form surface"),
-    statement("hole", Fate::NoEffect, "part of a free-form surface"),
-    statement("scrv", Fate::NoEffect, "part of a free-form surface"),
-    statement("sp", Fate::NoEffect, "part of a free-form surface"),
-    statement("curv2", Fate::NoEffect, "part of a free-form surface"),
-    statement("con", Fate::NoEffect, "connection of free-form surfaces"),
-    statement("ctech", Fate::NoEffect, "approximation of free-form curves"),
-    statement("stech", Fate::NoEffect, "approximation of free-form surfaces"),
-    statement("end", Fate::NoEffect, "end of a free-form curve or surface"),
-];
 
 /// Maximum number of keywords that are reported.
 const MAX_REPORTED: usize = 10;
@@ -78,7 +26,7 @@ impl UnreadKeywords {
         if self.0.iter().any(|(known, _)| known == word) {
             return;
         }
-        let is_listed = std::str::from_utf8(word).ok().is_some_and(|word| fate(OBJ, word) != Fate::Named);
+        let is_listed = std::str::from_utf8(word).ok().is_some_and(|word| fate(obj(), word) != Fate::Named);
         if !is_listed && !matches!(name(rest).as_str(), "off" | "0") {
             self.0.push((word.to_owned(), line));
         }
@@ -86,7 +34,7 @@ impl UnreadKeywords {
 
     /// Adds a warning for each keyword to `remarks`. Unknown words say nothing of a file without faces.
     pub fn report(&self, path: &Path, has_faces: bool, has_normals: bool, remarks: &mut Vec<Warning>) {
-        let is_listed = |word: &[u8]| OBJ.iter().any(|statement| statement.name.as_bytes() == word);
+        let is_listed = |word: &[u8]| obj().iter().any(|statement| statement.name.as_bytes() == word);
         let counts = |word: &[u8]| match word {
             b"s" => has_faces && !has_normals,
             word => has_faces || is_listed(word),
@@ -102,7 +50,7 @@ impl UnreadKeywords {
                 break;
             }
             let word = shown(word);
-            let note = OBJ.iter().find(|statement| statement.name == word).map(|statement| statement.note);
+            let note = listed(obj(), &word).map(|statement| statement.note);
             let what = match note {
                 Some(_) => format!("the statement \"{word}\" is not supported"),
                 None => format!("the statement \"{word}\" is unknown"),
@@ -117,7 +65,6 @@ mod tests {
     use super::super::obj;
     use super::*;
     use crate::selection::PartSelection;
-    use crate::statements::assert_page_lists;
 
     fn remarks(text: &str) -> Vec<String> {
         let text = format!("v 0 0 0\nv 1 0 0\nv 0 1 0\n{text}\nf 1 2 3\n");
@@ -128,13 +75,8 @@ mod tests {
     }
 
     #[test]
-    fn the_page_lists_the_statements() {
-        assert_page_lists("OBJ", OBJ);
-    }
-
-    #[test]
     fn statements_that_are_named_warn_once_with_their_line_and_others_do_not() {
-        for statement in OBJ {
+        for statement in super::obj() {
             let said = remarks(&format!("{0} 1 2 3\n{0} 1 2 3", statement.name));
             match statement.fate {
                 Fate::Named => {

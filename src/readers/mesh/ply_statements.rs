@@ -3,47 +3,16 @@
 use super::ply_attributes::{ChannelProperty, attributes};
 use super::ply_header::line_end;
 use crate::error::{Location, Warning};
-use crate::statements::{Fate, Statement};
+use crate::statements::{Fate, Statement, listed, table};
 use std::path::Path;
 
 /// Names of a coordinate of a texture, of which the first in the file is read.
 const UV: [[&str; 3]; 2] = [["u", "s", "texture_u"], ["v", "t", "texture_v"]];
 
-/// Elements, properties and lines of the header, as the page lists them.
-const STATEMENTS: &[Statement] = {
-    use Fate::{Named, NoEffect, Read, Refused};
-    const fn new(name: &'static str, fate: Fate, note: &'static str) -> Statement {
-        Statement { name, fate, note }
-    }
-    &[
-        new("comment", NoEffect, "whatever it says"),
-        new("obj_info", NoEffect, "whatever it says"),
-        new("other lines of the header", Refused, "a header has none"),
-        new("vertex.x", Read, "position, with `y` and `z`"),
-        new("vertex.nx", Read, "normal, with `ny` and `nz`"),
-        new("vertex.u", Read, "texture coordinates, with `v`"),
-        new("vertex.s", Read, "texture coordinates, with `t`"),
-        new("vertex.texture_u", Read, "texture coordinates, with `texture_v`"),
-        new("vertex.red", Read, "colour, with `green` and `blue`; also `r`, `diffuse_red`"),
-        new(
-            "vertex.name_x",
-            Read,
-            "attribute `vertex_name`, alone or with `name_y` and `name_z`; also `_r`, `_0`, `_1`",
-        ),
-        new("face.red", Read, "colour of faces, with `green` and `blue`"),
-        new("face.name_x", Read, "attribute `face_name`, as of vertices"),
-        new("face.vertex_indices", Read, "corners, three or more"),
-        new("face.vertex_index", Read, "corners, three or more"),
-        new("vertex.quality", Named, "they are left out"),
-        new("vertex.confidence", Named, "they are left out"),
-        new("vertex.intensity", Named, "they are left out"),
-        new("vertex.material_index", Named, "they are left out: the mesh has one material"),
-        new("face.texcoord", Named, "they are left out: corners have the coordinates of their vertices"),
-        new("face.material_index", Named, "they are left out: the mesh has one material"),
-        new("edge", Named, "it is left out: lines have no surface"),
-        new("tristrips", Named, "it is left out; convert strips to faces"),
-    ]
-};
+/// Returns the elements, properties and lines of the header, as the page lists them.
+fn ply() -> &'static [Statement] {
+    table("PLY")
+}
 
 /// An element of a header: its line, number, and the names of its properties.
 struct HeaderElement<'a> {
@@ -86,8 +55,7 @@ pub(super) fn unread(header: &[u8], path: &Path) -> Vec<Warning> {
 
 /// Returns the remark of the page on a statement that is named.
 fn note(name: &str) -> Option<&'static str> {
-    let found = STATEMENTS.iter().find(|statement| statement.name == name);
-    found.filter(|statement| statement.fate == Fate::Named).map(|statement| statement.note)
+    listed(ply(), name).filter(|statement| statement.fate == Fate::Named).map(|statement| statement.note)
 }
 
 /// Parses the elements of a valid header.
@@ -145,7 +113,6 @@ fn fates(element: &HeaderElement) -> Vec<Fate> {
 mod tests {
     use super::*;
     use crate::mesh::ply;
-    use crate::statements::assert_page_lists;
 
     /// Returns the warnings about a triangle with further lines in the headers of its vertices and faces, and after.
     fn warnings([vertex, face, after]: [&str; 3], values: [&str; 3]) -> Vec<String> {
@@ -164,14 +131,9 @@ mod tests {
     }
 
     #[test]
-    fn the_page_lists_these_statements() {
-        assert_page_lists("PLY", STATEMENTS);
-    }
-
-    #[test]
     fn what_is_listed_as_named_is_named_and_what_is_read_is_not() {
         assert_eq!(warnings([""; 3], [""; 3]), [""; 0]);
-        for Statement { name, fate, .. } in STATEMENTS {
+        for Statement { name, fate, .. } in super::ply() {
             let found = match name.split_once('.') {
                 Some(("vertex", "x")) => Vec::new(),
                 Some(("vertex", "nx")) => {

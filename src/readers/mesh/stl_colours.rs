@@ -7,12 +7,16 @@
 //! Codes are sRGB. Other programs leave the bytes as they are, or number faces in them. So the bytes are colours
 //! without `COLOR=` only if each is 0 or has bit 15, and not all are 0x8000 or 0xFFFF.
 
-use super::stl_statements::{COLOR, MATERIAL, note};
 use crate::decode::srgb_to_linear;
 use crate::error::{Location, Severity, Warning};
+use crate::statements::{note, table};
 use base::math::Rgb;
 use std::path::Path;
 
+/// Colour of all faces in the header.
+const COLOR: &str = "COLOR=";
+/// Material of all faces in the header.
+const MATERIAL: &str = "MATERIAL=";
 /// Bytes per triangle: normal, corners and two bytes of attributes.
 pub const RECORD: usize = 50;
 /// Bit that all writers know.
@@ -52,7 +56,7 @@ pub fn report(header: &[u8], records: &[[u8; RECORD]], path: &Path, remarks: &mu
     }
     // Bytes that are all equal are filled in by writers that have no material.
     if behind(header, MATERIAL).is_some_and(|bytes: [u8; 12]| bytes.iter().any(|byte| *byte != bytes[0])) {
-        warn("MATERIAL= is not read", note(MATERIAL));
+        warn("MATERIAL= is not read", note(table("STL"), MATERIAL));
     }
     if colour.is_none() && codes(records).any(is_foreign) {
         remarks.push(Warning {

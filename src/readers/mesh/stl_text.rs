@@ -3,9 +3,9 @@
 //! A facet that cannot be read is left out with a warning.
 
 use super::stl_soup::SoupBuilder;
-use super::stl_statements::note;
 use super::wavefront::{lines, shown};
 use crate::error::{Location, Severity, Warning};
+use crate::statements::{note, table};
 use std::iter::Peekable;
 use std::path::Path;
 
@@ -179,7 +179,11 @@ impl Findings {
                 warn(*line, "further statements are unknown".to_owned(), "they are left out".to_owned());
                 break;
             }
-            warn(*line, format!("the statement \"{word}\" is not supported"), note(word).to_owned());
+            warn(
+                *line,
+                format!("the statement \"{word}\" is not supported"),
+                note(table("STL"), word).to_owned(),
+            );
         }
         if let Some((line, what)) = self.first {
             let others = self.left_out - 1;
@@ -225,6 +229,7 @@ fn has_digit(word: &str) -> bool {
 #[cfg(test)]
 mod tests {
     use super::super::stl::tests::read;
+    use crate::statements::{Fate, Statement, table};
 
     const SQUARE: &str = "solid square\n facet normal 0 0 1\n  outer loop\n   vertex -1 -1 0\n   vertex 1 -1 0\n   \
         vertex 1 1 0\n  endloop\n endfacet\n facet normal 0 0 1\n  outer loop\n   vertex -1 -1 0\n   vertex 1 1 0\n   \
@@ -257,6 +262,20 @@ mod tests {
         let (mesh, said) = read(SQUARE.replace("1 0\n", "1,000 0,000\n").as_bytes());
         assert_eq!((&mesh.positions, &mesh.triangles), (&right.positions, &right.triangles));
         assert!(said.len() == 1 && said[0].starts_with("m.stl:4: numbers have a comma"), "{said:?}");
+    }
+
+    #[test]
+    fn statements_are_named_as_the_page_says() {
+        let words = table("STL").iter().filter(|row| row.name.len() < 9 && row.name != "COLOR=");
+        for Statement { name, fate, .. } in words {
+            let facet = "facet\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n";
+            let line = if *name == "vertex" { "" } else { name };
+            let (mesh, said) = read(format!("solid a\n{facet}{line}\n{facet}endsolid\n").as_bytes());
+            assert_eq!(mesh.triangles.len(), 2, "{name}");
+            // A lone end of corners has none.
+            let is_said = *fate == Fate::Named || *name == "endloop";
+            assert_eq!(said.len(), usize::from(is_said), "{name}: {said:?}");
+        }
     }
 
     #[test]

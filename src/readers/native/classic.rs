@@ -16,9 +16,9 @@
 
 use super::builder::SceneBuilder;
 use crate::error::{Location, SceneError};
-use crate::mesh::mtl::{ClassicMaterial, Unmodelled};
-use crate::mesh::mtl_statements::AMBIENT_NOTE;
+use crate::mesh::mtl::{ClassicMaterial, Unmodelled, mtl};
 use crate::plan::Appearance;
+use crate::statements::note;
 use base::math::{Rgb, luminance};
 use scene::{
     Coat, Distribution, Emission, Fresnel, Lobe, Material, Principled, Reflectance, Roughness, Share,
@@ -122,7 +122,7 @@ impl<'b, 'a> LibraryReader<'b, 'a> {
         let text = |keyword: &str| source.maps.get(keyword).map(|map| map.text.clone());
         // Exporters write the image of Kd twice.
         if text("map_Ka").is_some_and(|ambient| Some(ambient) != text("map_Kd")) {
-            self.lacks(source, "map_Ka", "map_Ka".to_owned(), AMBIENT_NOTE);
+            self.lacks(source, "map_Ka", "map_Ka".to_owned(), note(mtl(), "map_Ka"));
         }
         let name = &source.name;
         if let (None, Some((transparency, line))) = (source.dissolve, source.transparency)

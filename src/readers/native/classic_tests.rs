@@ -1,6 +1,7 @@
 //! Tests of materials of MTL files.
 
-use crate::mesh::mtl_statements::{MAP_OPTIONS, MTL};
+use crate::mesh::map_options::options;
+use crate::mesh::mtl::mtl;
 use crate::statements::Fate;
 use crate::{LoadOptions, Loaded, Severity, load};
 use base::math::Rgb;
@@ -108,8 +109,8 @@ fn every_statement_and_option_is_read_or_named() {
         "-type" => "sphere",
         _ => "0.5",
     };
-    let of_statements = MTL.iter().map(|s| (s, format!("{} {}", s.name, value(s.name))));
-    let of_options = MAP_OPTIONS.iter().map(|s| {
+    let of_statements = mtl().iter().map(|s| (s, format!("{} {}", s.name, value(s.name))));
+    let of_options = options().iter().map(|s| {
         let map = if matches!(s.name, "-bm" | "-imfchan") { "bump" } else { "map_Kd" };
         (s, format!("{map} {} {} tile.png", s.name, value(s.name)))
     });

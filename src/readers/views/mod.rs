@@ -6,7 +6,6 @@
 //! their numbers.
 
 mod names;
-mod statements;
 mod transforms;
 
 use crate::draft::{DraftCamera, DraftView};

@@ -3,12 +3,11 @@
 //! Intrinsics of a frame replace the intrinsics of the file. Cameras look along -z with y up, as in OpenGL and Blender.
 //! A scale of the matrix has no effect. Numbers may be texts, and Python's `NaN` and `Infinity` are read as texts.
 
-use super::statements::STATEMENTS;
 use crate::draft::{DraftCamera, DraftView};
 use crate::error::{Location, Log, SceneError};
 use crate::file::read_text;
 use crate::json_text;
-use crate::statements::{Fate, fate};
+use crate::statements::{self, Fate, fate, note};
 use base::math::{right_of, unit};
 use glam::DVec3;
 use scene::MAX_SIDE;
@@ -112,6 +111,7 @@ struct Frame<'a> {
 impl Reader<'_> {
     /// Names keys whose values change the image and are not supported, each once. Zeros change nothing.
     fn name_unread(&mut self, table: &Map<String, Value>, log: &mut Log) -> Result<(), SceneError> {
+        let keys = statements::table("Lists of cameras");
         for (key, value) in table {
             let is_nothing = match value {
                 Value::Number(number) => number.as_f64() == Some(0.0),
@@ -120,12 +120,10 @@ impl Reader<'_> {
                 Value::Array(values) => values.iter().all(|value| value.as_f64() == Some(0.0)),
                 Value::String(_) | Value::Object(_) => false,
             };
-            if is_nothing || fate(STATEMENTS, key) != Fate::Named || !self.named.insert(key.clone()) {
+            if is_nothing || fate(keys, key) != Fate::Named || !self.named.insert(key.clone()) {
                 continue;
             }
-            let known = STATEMENTS.iter().find(|statement| statement.name == key);
-            let fallback = known.map_or("it is left out", |statement| statement.note);
-            log.warn(self.place, format!("`{key}` is not supported"), fallback)?;
+            log.warn(self.place, format!("`{key}` is not supported"), note(keys, key))?;
         }
         let model = table.get("camera_model").and_then(Value::as_str);
         if let Some(model) = model.filter(|model| !PERSPECTIVE.contains(model))
