@@ -4,6 +4,7 @@
 //! Images of 8 or 16 bits are sRGB unless read raw. Floating-point images are linear. Alpha is dropped, as in Mitsuba.
 
 use super::budget::lacking;
+use super::colour_profile::{self, Conversion, srgb_to_linear};
 use super::error::{Location, SceneError};
 use base::exr_file::{ExrPicture, ExrSource, read_picture};
 use base::math::Rgb;
@@ -88,7 +89,9 @@ pub fn decode(
     let image = if bytes.starts_with(&[0x76, 0x2F, 0x31, 0x01]) {
         decode_exr(bytes, channel)
     } else {
-        decode_common(bytes, channel, path)
+        let conversion =
+            if channel == Channel::Colour { colour_profile::to_srgb(bytes, place) } else { None };
+        decode_common(bytes, channel, path, conversion)
     };
     let image = image.and_then(|p| match p.texels.is_empty() {
         true => Err("it has no pixels".into()),
@@ -131,7 +134,12 @@ fn check_size(width: usize, height: usize, pixel_bytes: u64, bytes: &[u8]) -> Re
     }
 }
 
-fn decode_common(bytes: &[u8], channel: Channel, path: &Path) -> Result<DecodedImage, Refusal> {
+fn decode_common(
+    bytes: &[u8],
+    channel: Channel,
+    path: &Path,
+    conversion: Option<Conversion>,
+) -> Result<DecodedImage, Refusal> {
     let usual = usual_radiance(bytes);
     let bytes = usual.as_deref().unwrap_or(bytes);
     let mut reader = image::ImageReader::new(Cursor::new(bytes)).with_guessed_format()?;
@@ -146,10 +154,12 @@ fn decode_common(bytes: &[u8], channel: Channel, path: &Path) -> Result<DecodedI
     let mut decoder = reader.into_decoder()?;
     decoder.set_limits(limits)?;
     let (width, height) = decoder.dimensions();
-    let is_short = decoder.color_type().bytes_per_pixel() == decoder.color_type().channel_count();
+    let is_short = conversion.is_none()
+        && decoder.color_type().bytes_per_pixel() == decoder.color_type().channel_count();
     let pixel_bytes = if is_short { SHORT_PIXEL_BYTES } else { LONG_PIXEL_BYTES };
     check_size(width as usize, height as usize, pixel_bytes, bytes)?;
     let image = DynamicImage::from_decoder(decoder)?;
+    let image = conversion.and_then(|conversion| conversion.apply(&image)).unwrap_or(image);
     let (width, height) = (image.width() as usize, image.height() as usize);
     let grey = |code: &dyn Fn(&[u8; 4]) -> u8| {
         let codes: Vec<[u8; 4]> = image.to_rgba8().pixels().map(|p| [code(&p.0); 4]).collect();
@@ -206,11 +216,6 @@ fn usual_radiance(bytes: &[u8]) -> Option<Vec<u8>> {
 
 fn linear(encoded: f32, raw: bool) -> f32 {
     if raw { encoded } else { srgb_to_linear(encoded) }
-}
-
-/// Converts an sRGB value to linear (IEC 61966-2-1).
-pub(crate) fn srgb_to_linear(encoded: f32) -> f32 {
-    if encoded <= 0.04045 { encoded / 12.92 } else { ((encoded + 0.055) / 1.055).powf(2.4) }
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 //!
 //! Exporters of models mostly leave lights out, and viewers add their own. So a model without a lamp gets a sky.
 
-use crate::decode::srgb_to_linear;
+use crate::colour_profile::srgb_to_linear;
 use crate::error::{Location, Log, SceneError};
 use crate::plan::{Contents, EnvironmentPlan, MaterialPlan, NamedAppearances};
 use crate::sky::SkyPlan;

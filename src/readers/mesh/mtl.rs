@@ -7,7 +7,7 @@
 use super::encodings;
 use super::faults::{MAX_CODE, are_codes, note_of_codes};
 use super::wavefront::{self, numbers, shown, split_word, statements, values, words};
-use crate::decode::srgb_to_linear;
+use crate::colour_profile::srgb_to_linear;
 use crate::error::{Location, SceneError, Warning};
 use crate::statements::{Fate, Statement, listed, table};
 use base::math::Rgb;

@@ -22,7 +22,7 @@ use super::obj_statements::UnreadKeywords;
 use super::wavefront::{is_coloured, name, numbers, shown, split_word, statements, values, words};
 use super::{RawMesh, polygon};
 use crate::attributes::{NamedAttribute, VERTEX_COLOUR};
-use crate::decode::srgb_to_linear;
+use crate::colour_profile::srgb_to_linear;
 use crate::error::{Location, SceneError, Warning};
 use crate::selection::PartSelection;
 use base::math::Rgb;

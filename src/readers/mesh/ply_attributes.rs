@@ -11,7 +11,7 @@
 
 use super::faults::{MAX_CODE, are_codes};
 use crate::attributes::NamedAttribute;
-use crate::decode::srgb_to_linear;
+use crate::colour_profile::srgb_to_linear;
 use base::math::Rgb;
 use scene::AttributeValues;
 

@@ -7,7 +7,7 @@
 //! Codes are sRGB. Other programs leave the bytes as they are, or number faces in them. So the bytes are colours
 //! without `COLOR=` only if each is 0 or has bit 15, and not all are 0x8000 or 0xFFFF.
 
-use crate::decode::srgb_to_linear;
+use crate::colour_profile::srgb_to_linear;
 use crate::error::{Location, Severity, Warning};
 use crate::statements::{note, table};
 use base::math::Rgb;

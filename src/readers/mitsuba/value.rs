@@ -1,7 +1,7 @@
 //! Property values of Mitsuba XML: numbers, colours, vectors and transforms.
 
 use super::cie;
-use crate::decode::srgb_to_linear;
+use crate::colour_profile::srgb_to_linear;
 use crate::error::{Location, SceneError};
 use base::math::{Rgb, right_of, unflattened, unit};
 use glam::{DMat4, DVec3, DVec4};
