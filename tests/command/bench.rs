@@ -80,7 +80,7 @@ fn the_study_of_growth_tells_time_by_pixels_and_error_by_lamps() {
     let common = ["bench", "growth", "cornell", "--scenes", SCENES, "-o", "out", "--resolution", "16x16"];
     let found = sandbox.run(&[&common[..], &["--knob", "width"]].concat()).expect(2);
     assert!(found.stderr.contains("pixels, lamps, triangles"), "{}", found.stderr);
-    let knobs = ["--knob", "pixels", "--knob", "lamps", "--knob", "threads", "--reference-spp", "1024"];
+    let knobs = ["--knob", "pixels", "--knob", "lamps", "--knob", "threads", "--reference-spp", "256"];
     sandbox.run(&[&common[..], &knobs].concat()).expect(0);
     let read = |file: &str| fs::read_to_string(sandbox.path(file)).unwrap();
     assert!(read("out/growth.md").contains("## Lamps") && read("out/growth.html").contains("<svg"));

@@ -98,7 +98,7 @@ fn interrupted_often(sandbox: &Sandbox, arguments: &[&str], times: u32) {
 #[test]
 fn interrupted_paths_go_on_to_the_bytes_of_an_undisturbed_render() {
     let sandbox = Sandbox::new();
-    let arguments = Sandbox::path_tracing("3000", &["--reproducible", "--resume", "--aov", "depth"]);
+    let arguments = Sandbox::path_tracing("1000", &["--reproducible", "--resume", "--aov", "depth"]);
     sandbox.run(&arguments).expect(0);
     let files = || [read(&sandbox.path("a.exr")), read(&sandbox.path("a.png"))];
     let whole = files();
@@ -106,7 +106,7 @@ fn interrupted_paths_go_on_to_the_bytes_of_an_undisturbed_render() {
         interrupted_often(&sandbox, &arguments, times);
         let file = ExrFile::read(&sandbox.path("a.exr")).unwrap();
         assert_eq!(file.metadata().text("partial"), Some("true"));
-        assert!(file.numbers("samples").unwrap().pixels.iter().any(|n| *n > 0 && *n < 3000));
+        assert!(file.numbers("samples").unwrap().pixels.iter().any(|n| *n > 0 && *n < 1000));
         assert_eq!(file.metadata().number("nonfinite"), Some(0.0));
     }
     let stderr = sandbox.run(&arguments).expect(0).stderr;
@@ -183,7 +183,7 @@ fn a_part_of_a_picture_does_not_replace_a_whole_one() {
 #[test]
 fn a_part_beside_a_whole_picture_is_gone_on_from_and_goes_when_it_is_whole() {
     let sandbox = Sandbox::new();
-    let arguments = Sandbox::path_tracing("3000", &["--resume"]);
+    let arguments = Sandbox::path_tracing("1000", &["--resume"]);
     let is_interrupted = (0..50).any(|_| {
         sandbox.render("a.exr", &[]).expect(0);
         interrupted(&sandbox, &arguments)
@@ -192,7 +192,7 @@ fn a_part_beside_a_whole_picture_is_gone_on_from_and_goes_when_it_is_whole() {
     let stderr = sandbox.run(&arguments).expect(0).stderr;
     assert!(stderr.contains("continuing with the samples of a.partial.exr"), "{stderr}");
     assert_eq!(sandbox.files(), ["a.exr", "a.png", "room.xml"]);
-    assert_eq!(ExrFile::read(&sandbox.path("a.exr")).unwrap().metadata().number("spp"), Some(3000.0));
+    assert_eq!(ExrFile::read(&sandbox.path("a.exr")).unwrap().metadata().number("spp"), Some(1000.0));
 }
 
 #[test]

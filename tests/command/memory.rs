@@ -40,7 +40,7 @@ fn copies_of_meshes_are_counted_before_they_are_made() {
             .to_owned();
     ply += &"3 0 1 2\n".repeat(50_000);
     std::fs::write(sandbox.path("a.ply"), ply).unwrap();
-    let of_file = "<shape type=\"ply\"><string name=\"filename\" value=\"a.ply\"/></shape>".repeat(1000);
+    let of_file = "<shape type=\"ply\"><string name=\"filename\" value=\"a.ply\"/></shape>".repeat(100);
     for (name, shapes) in [("instances", own), ("files", of_file)] {
         let text = format!("<scene version=\"3.0.0\"><sensor type=\"perspective\"/>{shapes}</scene>");
         std::fs::write(sandbox.path("a.xml"), text).unwrap();

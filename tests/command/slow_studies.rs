@@ -26,7 +26,7 @@ fn without_machine(report: &str) -> &str {
 fn table(sandbox: &Sandbox, scenes: &[&str], reference_spp: &str) -> Finished {
     // The room with a path as long as the walk of the table.
     fs::write(sandbox.path("path.toml"), super::walk::PATH.replace("frame = 6", "frame = 24")).unwrap();
-    let common = ["--scenes", SCENES, "-o", "study", "--resolution", "64x64", "--threads", "2"];
+    let common = ["--scenes", SCENES, "-o", "study", "--resolution", "32x32", "--threads", "2"];
     let reference = ["--reference-spp", reference_spp];
     sandbox.run(&[&["bench", "table1"], scenes, &common[..], &reference].concat()).expect(0)
 }

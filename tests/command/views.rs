@@ -256,7 +256,7 @@ mod signals {
     /// Starts slow views, sends the signal as view 3 begins; returns the exit code.
     fn stopped(sandbox: &Sandbox, signal: &str) -> Option<i32> {
         let mut child = sandbox
-            .command(&arguments(&["--progress", "ndjson", "--spp", "300"]))
+            .command(&arguments(&["--progress", "ndjson", "--spp", "120"]))
             .stderr(Stdio::piped())
             .spawn()
             .unwrap();
@@ -271,7 +271,7 @@ mod signals {
     #[test]
     fn whatever_stops_views_leaves_whole_ones_and_resuming_does_the_rest() {
         let sandbox = sandbox();
-        views(&sandbox, &["--spp", "300"]).expect(0);
+        views(&sandbox, &["--spp", "120"]).expect(0);
         let whole = NAMES.map(|name| colour(&sandbox, name));
         for (signal, code) in [("-KILL", None), ("-INT", Some(75))] {
             clear(&sandbox);
@@ -282,7 +282,7 @@ mod signals {
                 "{there:?}"
             );
             let kept = read(&sandbox.path("out/train/r_0.exr"));
-            views(&sandbox, &["--resume", "--spp", "300"]).expect(0);
+            views(&sandbox, &["--resume", "--spp", "120"]).expect(0);
             assert!(files(&sandbox).len() == 10 && read(&sandbox.path("out/train/r_0.exr")) == kept);
             assert!(NAMES.map(|name| colour(&sandbox, name)) == whole, "{signal}");
         }

@@ -302,7 +302,7 @@ mod signals {
     /// Starts a walk of slow frames, sends the signal as frame 3 begins; returns the exit code.
     fn stopped(sandbox: &Sandbox, signal: &str) -> Option<i32> {
         let mut child = sandbox
-            .command(&arguments("1-6", &["--progress", "ndjson", "--spp", "300"]))
+            .command(&arguments("1-6", &["--progress", "ndjson", "--spp", "120"]))
             .stderr(Stdio::piped())
             .spawn()
             .unwrap();
@@ -326,7 +326,7 @@ mod signals {
                 assert_eq!(file.metadata().text("partial"), Some("false"));
             }
             let kept = read(&sandbox.path("f/a.01.exr"));
-            sandbox.run(&arguments("1-6", &["--resume", "--spp", "300"])).expect(0);
+            sandbox.run(&arguments("1-6", &["--resume", "--spp", "120"])).expect(0);
             assert_eq!(frames(&sandbox).len(), 12);
             assert_eq!(read(&sandbox.path("f/a.01.exr")), kept);
         }

@@ -83,9 +83,14 @@ pub(crate) fn mean_by(world: &WorldAndView, settings: &impl Renderer) -> DVec3 {
     mean(&image(world, settings))
 }
 
-/// Mean of the image by paths.
+/// Mean of the image by paths, which seldom find lamps behind glass.
 pub(crate) fn by_paths(world: &WorldAndView) -> DVec3 {
-    mean_by(world, &path::Settings { spp: spp_of(world, 1 << 20), ..Default::default() })
+    by_so_many_paths(world, 1 << 20)
+}
+
+/// Mean of the image by so many paths in all.
+pub(crate) fn by_so_many_paths(world: &WorldAndView, paths: u32) -> DVec3 {
+    mean_by(world, &path::Settings { spp: spp_of(world, paths), ..Default::default() })
 }
 
 /// Mean of the default's images over some seeds.

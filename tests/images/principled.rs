@@ -1,11 +1,14 @@
 //! Principled materials: all methods against path tracing.
 
-use crate::glass::{NOISE, by_default, by_paths, mean_by};
+use crate::glass::{NOISE, by_default, by_so_many_paths, mean_by};
 use crate::kit::*;
 use crate::oracle::assert_means_within;
 use lightsplat::math::Rgb;
 use lightsplat::method::vpl;
 use lightsplat::scene::{Material, Principled, Reflectance};
+
+/// Number of paths of a reference. Its standard error is a fifth of the noise that is allowed.
+const PATHS: u32 = 1 << 18;
 
 /// A room with a ball of varnished paint, of metal, of frosted glass, and of leaves, on walls that are
 /// principled, too, but for the leaves.
@@ -52,7 +55,7 @@ fn rooms() -> Vec<(WorldAndView, &'static str)> {
 #[test]
 fn the_default_agrees_with_paths() {
     for (world, what) in rooms() {
-        assert_means_within(NOISE, by_default(&world), by_paths(&world), what);
+        assert_means_within(NOISE, by_default(&world), by_so_many_paths(&world, PATHS), what);
     }
 }
 
@@ -60,7 +63,7 @@ fn the_default_agrees_with_paths() {
 #[ignore = "a study: cuts and photons in rooms of principled materials"]
 fn cuts_and_photons_agree_with_paths() {
     for (world, what) in rooms() {
-        let exact = by_paths(&world);
+        let exact = by_so_many_paths(&world, PATHS);
         let cuts = vpl::Settings { spp: 64, ..vpl::Settings::lightcuts() };
         assert_means_within(0.03, mean_by(&world, &cuts), exact, &format!("{what}, lightcuts"));
         let photons = vpl::Settings { spp: 64, ..vpl::Settings::photon_cache() };
@@ -71,7 +74,7 @@ fn cuts_and_photons_agree_with_paths() {
 #[test]
 fn cuts_and_photons_agree_with_paths_in_a_painted_room() {
     let (world, what) = rooms().swap_remove(0);
-    let exact = by_paths(&world);
+    let exact = by_so_many_paths(&world, PATHS);
     let cuts = vpl::Settings { spp: 4, ..vpl::Settings::lightcuts() };
     assert_means_within(0.03, mean_by(&world, &cuts), exact, &format!("{what}, lightcuts"));
     let photons = vpl::Settings { spp: 4, ..vpl::Settings::photon_cache() };
