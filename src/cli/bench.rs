@@ -56,7 +56,7 @@ pub fn run(args: BenchArgs) -> Result<(), Failure> {
         .map(|path| pool.install(|| opened::open(path, &LoadOptions::default())))
         .transpose()?;
     if let Some(opened) = &session {
-        Inputs::of(&opened.session).check_apart(files())?;
+        Inputs::of_session(&opened.session).check_apart(files())?;
     }
     let report = pool.install(|| {
         let session = session.as_ref().map(|opened| &opened.session);

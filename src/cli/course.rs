@@ -42,7 +42,7 @@ pub struct Stages {
 
 impl Stages {
     /// Returns the stages of a frame with this goal.
-    pub fn of(goal: &Goal) -> Stages {
+    pub fn new(goal: &Goal) -> Stages {
         let (plan, measures) = match goal.plan {
             PlanGoal::AsSet if goal.may_choose && goal.denoises() => (OF_CHOICE, false),
             PlanGoal::AsSet => (0.0, false),
@@ -182,7 +182,7 @@ mod tests {
     #[test]
     fn stages_that_a_run_has_not_leave_no_gap_and_fractions_never_fall() {
         let goal = Goal { denoise: Some(false), ..Goal::default() };
-        let mut course = RunProgress::new(1, Stages::of(&goal), RunSpan::whole());
+        let mut course = RunProgress::new(1, Stages::new(&goal), RunSpan::whole());
         assert_eq!((course.fraction(None), course.eta_seconds()), (0.0, None));
         let half = 0.5 * (1.0 - END);
         assert!((course.fraction(Some(&at(Stage::Render, 5))) - half).abs() < 1e-9);
@@ -194,7 +194,7 @@ mod tests {
     #[test]
     fn plans_and_measurements_have_their_shares() {
         let verify = Some(render::verify::VerifySettings::default());
-        let choice = Stages::of(&Goal { may_choose: true, verify, ..Goal::default() });
+        let choice = Stages::new(&Goal { may_choose: true, verify, ..Goal::default() });
         let mut course = RunProgress::new(1, choice, RunSpan::whole());
         assert_eq!(course.fraction(Some(&Progress { is_planning: true, ..at(Stage::Verify, 9) })), 0.0);
         assert!(course.fraction(Some(&at(Stage::Render, 0))) >= OF_CHOICE);
@@ -202,7 +202,7 @@ mod tests {
         assert!(course.fraction(Some(&at(Stage::Verify, 5))) < 0.9);
         let searched = PlanGoal::Error(ErrorLimit { error: 0.1, max_samples: 1, pinned: Vec::new() });
         let mut course =
-            RunProgress::new(1, Stages::of(&Goal { plan: searched, ..Goal::default() }), RunSpan::whole());
+            RunProgress::new(1, Stages::new(&Goal { plan: searched, ..Goal::default() }), RunSpan::whole());
         assert_eq!(course.fraction(Some(&Progress { is_planning: true, ..at(Stage::Render, 9) })), 0.0);
         course.frame_done();
         assert_eq!(course.fraction(None), 1.0);

@@ -36,7 +36,7 @@ pub fn run(args: DenoiseFileArgs) -> Result<(), Failure> {
     let albedo = guide(&guides::ALBEDO).map_err(Failure::input)?;
     // The library does not use normals without albedo.
     let normal = if albedo.is_some() { guide(&guides::NORMAL).map_err(Failure::input)? } else { None };
-    let found = Guides {
+    let guides = Guides {
         albedo: albedo.as_ref().map(|(_, image)| image),
         normal: normal.as_ref().map(|(_, image)| image),
         // Guides of other renderers may be noisy, especially in blurred reflections.
@@ -46,7 +46,7 @@ pub fn run(args: DenoiseFileArgs) -> Result<(), Failure> {
     let (library, clean) = threads::pool(threads::count(args.threads))?
         .install(|| {
             let denoiser = Denoiser::load()?;
-            Ok((denoiser.name(), denoiser.denoise(&color, &found, args.quality())?))
+            Ok((denoiser.name(), denoiser.denoise(&color, &guides, args.quality())?))
         })
         .map_err(|error: render::denoise::DenoiseError| Failure::render(error))?;
     let guided_by: Vec<&str> =

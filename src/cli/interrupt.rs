@@ -98,10 +98,10 @@ struct Ignored(u64);
 impl Ignored {
     /// Reads the signals that this process ignores. Without the file of Linux, none are known.
     fn now() -> Ignored {
-        Ignored::of(&fs::read_to_string("/proc/self/status").unwrap_or_default())
+        Ignored::parse(&fs::read_to_string("/proc/self/status").unwrap_or_default())
     }
 
-    fn of(status: &str) -> Ignored {
+    fn parse(status: &str) -> Ignored {
         let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
         Ignored(mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok()).unwrap_or(0))
     }
@@ -125,8 +125,9 @@ mod tests {
 
     #[test]
     fn ignored_signals_are_bits_of_the_mask_in_the_status() {
-        let found =
-            |status: &str| [SIGHUP, SIGINT, SIGUSR1, SIGTERM].map(|signal| Ignored::of(status).has(signal));
+        let found = |status: &str| {
+            [SIGHUP, SIGINT, SIGUSR1, SIGTERM].map(|signal| Ignored::parse(status).has(signal))
+        };
         assert_eq!(
             found("SigBlk:\t00000000ffffffff\nSigIgn:\t0000000000001001\n"),
             [true, false, false, false]

@@ -140,12 +140,12 @@ impl RenderJob {
     pub fn key(&self, session: &Session) -> String {
         let tone = self.files.png.as_ref().map(|(_, tone)| tone.to_string());
         let framing = format!("{:?}", self.framing(session));
-        job_key::of(session, &self.goal, json!([framing, tone, self.reproducible]))
+        job_key::job_key(session, &self.goal, json!([framing, tone, self.reproducible]))
     }
 
     /// Returns frame, film size and crop.
     pub fn framing(&self, session: &Session) -> Framing {
-        let resolution = self.size.map(|size| size.of(session.cameras.resolution));
+        let resolution = self.size.map(|size| size.pixels(session.cameras.resolution));
         Framing { frame: self.frame, resolution, crop: self.crop }
     }
 }

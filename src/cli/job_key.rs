@@ -9,7 +9,7 @@ use std::path::Path;
 
 /// Returns the key of an image of `session` with `goal` by this version of the program. `more` holds further
 /// dependencies. The key does not depend on whether the denoiser is installed.
-pub fn of(session: &Session, goal: &Goal, more: Value) -> String {
+pub fn job_key(session: &Session, goal: &Goal, more: Value) -> String {
     let Goal { method, may_choose, plan, features, averaging, denoise_quality, keep_noisy, verify, .. } =
         goal;
     let plan = match plan {

@@ -39,7 +39,7 @@ impl MethodArgs {
         for (key, value) in &self.typed {
             if !method.assign(key, value) {
                 let setting = settings().into_iter().find(|setting| setting.spec.key == *key);
-                let of = setting.map_or(String::new(), |setting| setting.of().join(", "));
+                let of = setting.map_or(String::new(), |setting| setting.methods().join(", "));
                 let (option, name) = (key.replace('_', "-"), method.name());
                 return Err(usage(format!(
                     "--{option} is a setting of --method {of}; --method {name} has no such setting"
@@ -114,7 +114,7 @@ fn settings() -> Vec<MethodSetting> {
 
 impl MethodSetting {
     /// Returns the names of the methods that have the setting.
-    fn of(&self) -> Vec<&'static str> {
+    fn methods(&self) -> Vec<&'static str> {
         self.defaults.iter().map(|(method, _)| method.name()).collect()
     }
 
@@ -146,9 +146,9 @@ impl MethodSetting {
         let MethodSetting { spec, defaults, .. } = self;
         let mut help = spec.help();
         let others: Vec<_> =
-            Method::all().map(|method| method.name()).filter(|n| !self.of().contains(n)).collect();
+            Method::all().map(|method| method.name()).filter(|n| !self.methods().contains(n)).collect();
         if others.len() >= defaults.len() {
-            help += &format!(" [for {}]", self.of().join(", "));
+            help += &format!(" [for {}]", self.methods().join(", "));
         } else if !others.is_empty() {
             help += &format!(" [not for {}]", others.join(", "));
         }

@@ -98,7 +98,7 @@ impl Inputs {
     }
 
     /// The files of a session's scene.
-    pub fn of(session: &Session) -> Inputs {
+    pub fn of_session(session: &Session) -> Inputs {
         Inputs::new(&session.world.scene.sources)
     }
 

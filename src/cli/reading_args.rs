@@ -168,8 +168,9 @@ fn elevation(text: &str) -> Result<f64, String> {
 }
 
 fn lumens(text: &str) -> Result<f32, String> {
-    let found = number(text).map(|number| number as f32).filter(|lumens| lumens.is_normal() && *lumens > 0.0);
-    found.ok_or_else(|| "expected a number above 0".to_owned())
+    let lumens =
+        number(text).map(|number| number as f32).filter(|lumens| lumens.is_normal() && *lumens > 0.0);
+    lumens.ok_or_else(|| "expected a number above 0".to_owned())
 }
 
 fn point(text: &str) -> Result<DVec3, String> {

@@ -54,7 +54,7 @@ pub fn still(job: &RenderJob, opened: &Opened, span: RunSpan, control: &Control)
         return dry_run::still(job, &opened.session);
     }
     let begun = samples_so_far(job, &key);
-    let progress = Watch::new(job.progress, RunProgress::new(1, Stages::of(&job.goal), span));
+    let progress = Watch::new(job.progress, RunProgress::new(1, Stages::new(&job.goal), span));
     let mut showing = job.previews.begin(&job.files.names().swap_remove(0));
     let work = Work { begun, progress, showing: &mut showing };
     let mut frame = render(job, opened, work, control)?;
@@ -98,7 +98,7 @@ pub fn still(job: &RenderJob, opened: &Opened, span: RunSpan, control: &Control)
 
 /// Checks that the files of a job can be written, and are no inputs of the scene.
 fn check_files(job: &RenderJob, opened: &Opened) -> Result<(), Failure> {
-    let inputs = Inputs::of(&opened.session);
+    let inputs = Inputs::of_session(&opened.session);
     inputs.check_apart(job.files.paths().chain(job.previews.file()))?;
     outputs::check_unprotected(job.files.paths())?;
     let png = job.files.png.as_ref().map(|(path, _)| path.as_path());

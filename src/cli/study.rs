@@ -50,7 +50,7 @@ pub fn run(benchmark: &Benchmark, args: BenchArgs) -> Result<(), Failure> {
         folder: folder.clone(),
         threads: threads::count(args.threads),
         repeats: args.repeats.map_or(repeats, |n| n as usize),
-        resolution: args.study.resolution.map_or(*pixels, |size| size.of(*pixels)),
+        resolution: args.study.resolution.map_or(*pixels, |size| size.pixels(*pixels)),
         reference: ReferenceSettings {
             spp: args.study.reference_spp.unwrap_or(defaults.spp),
             seconds: args.study.reference_seconds.unwrap_or(defaults.seconds),

@@ -88,7 +88,7 @@ pub enum Resolution {
 
 impl Resolution {
     /// Returns the film size in pixels; `own` is that of the scene.
-    pub fn of(self, own: [u32; 2]) -> [u32; 2] {
+    pub fn pixels(self, own: [u32; 2]) -> [u32; 2] {
         let [width, height] = own.map(f64::from);
         let scaled = |scale: f64| {
             [width, height].map(|side| (side * scale).round().clamp(1.0, f64::from(MAX_SIDE)) as u32)
@@ -185,7 +185,7 @@ mod tests {
 
     #[test]
     fn sizes_and_crops_are_parsed_and_refused() {
-        let own = |text: &str| text.parse::<Resolution>().map(|size| size.of([960, 540]));
+        let own = |text: &str| text.parse::<Resolution>().map(|size| size.pixels([960, 540]));
         assert_eq!((own("640x480"), own("1X1")), (Ok([640, 480]), Ok([1, 1])));
         assert_eq!(
             (own("480"), own("x1080"), own("50%")),

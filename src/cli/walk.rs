@@ -57,7 +57,7 @@ pub fn walk(mut job: WalkJob, opened: &Opened, span: RunSpan, control: &Control)
     }
     let job = &job;
     let chunks = job.plan(session, *moves)?;
-    let inputs = Inputs::of(session);
+    let inputs = Inputs::of_session(session);
     for number in chunks.iter().flat_map(|chunk| &chunk.frames) {
         let (exr, png) = job.files(*number);
         let files = [&exr].into_iter().chain(&png).map(PathBuf::as_path);
@@ -84,7 +84,7 @@ pub fn walk(mut job: WalkJob, opened: &Opened, span: RunSpan, control: &Control)
         .filter(|_| shares_records)
         .map(|listed| listed.outlook(session, job.chunk_size(*moves), control));
     let outlook = outlook.as_ref();
-    let progress = Watch::new(job.progress, RunProgress::new(count, Stages::of(&job.goal), span));
+    let progress = Watch::new(job.progress, RunProgress::new(count, Stages::new(&job.goal), span));
     let (warnings, said) = (warnings.len(), BTreeSet::new());
     let showing = job.previews.begin(&job.shots.name());
     let (shared, look) = (Shared { listed, outlook }, None);

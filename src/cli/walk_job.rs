@@ -139,7 +139,7 @@ impl WalkJob {
     /// If a camera cannot be represented or a film cannot be rendered.
     pub fn listed(&self, session: &Session) -> Result<Option<ListedViews>, Failure> {
         let Some(views) = self.shots.views() else { return Ok(None) };
-        let size = |own| self.size.map_or(own, |size| size.of(own));
+        let size = |own| self.size.map_or(own, |size| size.pixels(own));
         let placed = ListedViews::new(session, &views.list, size, self.crop);
         placed.map(Some).map_err(|error| match error {
             ListedViewsError::Scene(error) => Failure::input(error),
@@ -193,7 +193,7 @@ impl WalkJob {
 
     /// Returns film size and crop.
     fn film(&self, session: &Session) -> Framing {
-        let resolution = self.size.map(|size| size.of(session.cameras.resolution));
+        let resolution = self.size.map(|size| size.pixels(session.cameras.resolution));
         Framing { frame: None, resolution, crop: self.crop }
     }
 
@@ -238,7 +238,7 @@ impl WalkJob {
     /// If the scene has no camera path, or a frame lies beyond it.
     pub fn plan(&self, session: &Session, moves: bool) -> Result<Vec<PlannedChunk>, Failure> {
         let numbers = self.numbers(session)?;
-        let key = job_key::of(
+        let key = job_key::job_key(
             session,
             &self.goal,
             json!([

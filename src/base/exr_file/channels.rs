@@ -116,8 +116,8 @@ pub fn picture_channels(parts: &[PartNames]) -> Result<PictureChannels, NoPictur
     let [named_colours, named_luma] = by_layer;
     let steps =
         [vec![called(&colours, "")], named_colours, vec![called(&luma, ""), all(&colours)], named_luma];
-    let found = steps.into_iter().flatten().chain([all(&luma)]).find(|found| !found.is_empty());
-    match found.as_deref() {
+    let images = steps.into_iter().flatten().chain([all(&luma)]).find(|images| !images.is_empty());
+    match images.as_deref() {
         Some([one]) => Ok(one.clone()),
         _ => Err(NoPicture {
             channels: parts.iter().flat_map(full_names).collect(),

@@ -69,7 +69,7 @@ mod tests {
     use crate::{LoadOptions, Loaded, load};
     use glam::Vec3;
 
-    fn of(text: &str) -> Loaded {
+    fn loaded(text: &str) -> Loaded {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("s.toml");
         std::fs::write(&path, text).unwrap();
@@ -82,7 +82,7 @@ mod tests {
             [[mesh]]\nshape = \"cube\"\nmaterial = \"m\"\n\
             transform = [{ scale = [1, 2, 30] }, { translate = [1000, 5, 6] }]\n";
         for head in ["", "resolution = [100, 300]\n", "camera = { up = [0, 0, 1], fov = 20 }\n"] {
-            let Loaded { scene, cameras, .. } = of(&format!("{head}{mesh}"));
+            let Loaded { scene, cameras, .. } = loaded(&format!("{head}{mesh}"));
             let camera = cameras.still;
             let aspect = cameras.resolution[1] as f32 / cameras.resolution[0] as f32;
             let mut extent = DVec2::ZERO;
@@ -100,7 +100,7 @@ mod tests {
 
     #[test]
     fn an_empty_scene_has_a_camera_too() {
-        assert!(of("# nothing\n").cameras.still.origin.is_finite());
+        assert!(loaded("# nothing\n").cameras.still.origin.is_finite());
     }
 
     #[test]

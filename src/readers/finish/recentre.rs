@@ -28,7 +28,7 @@ const UNSCALED_SIZES: std::ops::Range<i32> = -10..24;
 
 impl LocalCoordinates {
     /// Returns the coordinates for a draft.
-    pub fn of(draft: &Draft) -> LocalCoordinates {
+    pub fn around(draft: &Draft) -> LocalCoordinates {
         let lights = || draft.lights.iter().map(|light| light.1);
         let camera = draft.shot.camera.origin;
         let Some((low, high)) = bounds(corners::hull(draft)) else {

@@ -147,7 +147,7 @@ pub(super) struct Clip {
 
 impl Clip {
     /// Reads the animations of a file.
-    pub fn of(document: &GltfFile) -> Result<Clip, SceneError> {
+    pub fn read(document: &GltfFile) -> Result<Clip, SceneError> {
         let (mut clip, mut targets) = (Clip::default(), BTreeSet::new());
         for animation in &document.root.animations {
             let of_channel = |channel: &Channel| {

@@ -42,14 +42,14 @@ impl Viewer<'_> {
             };
             cameras.iter().enumerate().map(named).collect::<Vec<_>>().join(", ")
         };
-        let found = match wanted {
+        let chosen = match wanted {
             None => cameras.iter().find(|(at, _)| !self.tree[*at].place.is_hidden()).or(cameras.first()),
             Some(wanted) => {
                 let number = wanted.parse::<usize>().ok().and_then(|number| number.checked_sub(1));
                 let by_name = cameras
                     .iter()
                     .find(|(at, camera)| name(*at) == wanted || camera.name.as_deref() == Some(wanted));
-                let found = by_name.or_else(|| cameras.get(number?));
+                let camera = by_name.or_else(|| cameras.get(number?));
                 let unknown = || {
                     let remedy = match cameras.len() {
                         0 => "the model has none: leave --camera out".to_owned(),
@@ -57,10 +57,10 @@ impl Viewer<'_> {
                     };
                     self.document.place.no_camera(wanted, remedy)
                 };
-                Some(found.ok_or_else(unknown)?)
+                Some(camera.ok_or_else(unknown)?)
             }
         };
-        let Some(&(at, camera)) = found else { return Ok(None) };
+        let Some(&(at, camera)) = chosen else { return Ok(None) };
         if self.tree[at].place.is_hidden() {
             let what = "a camera has a scale of 0";
             report.note(what, "it is used all the same: scales do not change cameras", name(at));
@@ -110,7 +110,7 @@ impl Viewer<'_> {
     }
 
     fn lens(&self, at: usize, camera: &Camera) -> Result<Lens, SceneError> {
-        Lens::of(camera)
+        Lens::read(camera)
             .ok_or_else(|| self.document.wrong(format!("the camera {} has no lens", self.name(at))))
     }
 
@@ -172,7 +172,7 @@ struct Lens {
 }
 
 impl Lens {
-    fn of(camera: &Camera) -> Option<Lens> {
+    fn read(camera: &Camera) -> Option<Lens> {
         match (&camera.type_, &camera.perspective, &camera.orthographic) {
             (Checked::Valid(Type::Perspective), Some(lens), _) => {
                 let fov = f64::from(lens.yfov);

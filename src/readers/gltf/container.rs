@@ -21,7 +21,7 @@ pub(super) struct Container<'a> {
 
 impl<'a> Container<'a> {
     /// Divides a file into its parts.
-    pub fn of(bytes: &'a [u8], place: &Location) -> Result<Container<'a>, SceneError> {
+    pub fn parse(bytes: &'a [u8], place: &Location) -> Result<Container<'a>, SceneError> {
         match bytes.starts_with(b"glTF") {
             true => chunks(bytes, place),
             false => Ok(Container { json: bytes, binary: None, is_text: true }),
@@ -60,7 +60,7 @@ impl<'a> Container<'a> {
             false => located(error),
         })?;
         check_version(&root, place)?;
-        let local = |(i, node)| Local::of(node, nodes.get(i).unwrap_or(&Value::Null));
+        let local = |(i, node)| Local::read(node, nodes.get(i).unwrap_or(&Value::Null));
         let locals = root.nodes.iter().enumerate().map(local).collect();
         Ok(Description { root, locals, unread })
     }

@@ -58,7 +58,7 @@ impl GltfFile {
     /// Reads the file, to which `from` refers, and its buffers.
     pub fn open(path: &Path, from: &Location) -> Result<GltfFile, SceneError> {
         let bytes = read_file(path, from)?;
-        let container = Container::of(&bytes, &Location::file(path))?;
+        let container = Container::parse(&bytes, &Location::file(path))?;
         let mut document = GltfFile::described(path, &bytes, &container)?;
         for i in 0..document.root.buffers.len() {
             let buffer = document.buffer(i, container.binary)?;
@@ -74,7 +74,7 @@ impl GltfFile {
     /// Reads the description in the file, to which `from` refers, without its buffers.
     pub fn without_buffers(path: &Path, from: &Location) -> Result<GltfFile, SceneError> {
         let bytes = read_file(path, from)?;
-        let container = Container::of(&bytes, &Location::file(path))?;
+        let container = Container::parse(&bytes, &Location::file(path))?;
         GltfFile::described(path, &bytes, &container)
     }
 

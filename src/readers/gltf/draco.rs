@@ -23,7 +23,7 @@ struct DracoPrimitive {
 
 impl DracoPrimitive {
     /// Returns the statements about a primitive; `None` for a primitive that is not compressed.
-    fn of(primitive: &Primitive) -> Option<Result<DracoPrimitive, String>> {
+    fn parse(primitive: &Primitive) -> Option<Result<DracoPrimitive, String>> {
         let value = primitive.extensions.as_ref()?.others.get("KHR_draco_mesh_compression")?;
         Some(serde_json::from_value(value.clone()).map_err(|error| error.to_string()))
     }
@@ -39,7 +39,7 @@ pub(super) fn accessors<'a>(
     let mut accessors = BTreeMap::new();
     for (i, mesh) in root.meshes.iter().enumerate() {
         for (j, primitive) in mesh.primitives.iter().enumerate() {
-            let Some(compression) = DracoPrimitive::of(primitive) else { continue };
+            let Some(compression) = DracoPrimitive::parse(primitive) else { continue };
             let wrong = |problem: String| format!("mesh {i}, primitive {j}: its compressed form {problem}");
             let compression = compression.map_err(|error| wrong(format!("is not described: {error}")))?;
             let bytes = view(Index::new(compression.buffer_view));

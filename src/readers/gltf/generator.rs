@@ -16,7 +16,7 @@ pub(super) enum Generator {
 }
 
 impl Generator {
-    pub fn of(document: &GltfFile) -> Generator {
+    pub fn read(document: &GltfFile) -> Generator {
         Generator::named(document.root.asset.generator.as_deref().unwrap_or_default())
     }
 

@@ -30,7 +30,7 @@ impl Importer<'_> {
             return Ok(false);
         }
         let name = name_of(material, index);
-        let is_solid = Generator::of(document).is_blender()
+        let is_solid = Generator::read(document).is_blender()
             && (is_closed(document, std::slice::from_ref(primitive), what)?
                 || is_closed(document, &mesh.primitives, what)?);
         match is_solid {

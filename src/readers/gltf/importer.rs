@@ -255,7 +255,7 @@ impl Importer<'_> {
             let what = primitive_name(mesh, index, i);
             let is_solid = self.is_solid(primitive, mesh, &what)?;
             let surface =
-                self.surface(primitive.material, VertexColours::of(document, primitive)?, is_solid)?;
+                self.surface(primitive.material, VertexColours::read(document, primitive)?, is_solid)?;
             let has_tangents = self.has_direction(surface.appearance);
             let raw = mesh::read(document, primitive, surface.uv_set, has_tangents, &what, &mut self.report)?;
             let part = |raw| Part { primitive: i, raw: Arc::new(raw), appearance: surface.appearance };

@@ -31,7 +31,7 @@ pub(super) fn lumens_per_watt(
     if let Some(given) = given {
         return given;
     }
-    match Generator::of(document) {
+    match Generator::read(document) {
         Generator::BlenderWithWatts => match light.type_ {
             Checked::Valid(Type::Directional) => 1.0,
             _ => 4.0 * std::f32::consts::PI,

@@ -72,7 +72,7 @@ impl Importer<'_> {
         let slots = [&base.base_color_texture, &base.metallic_roughness_texture, &source.emissive_texture];
         let normal = source.normal_texture.iter().map(|info| TextureUse::of_normal(info).set);
         let sets: Vec<u32> =
-            slots.into_iter().flatten().map(|info| TextureUse::of(info).set).chain(normal).collect();
+            slots.into_iter().flatten().map(|info| TextureUse::read(info).set).chain(normal).collect();
         if sets.windows(2).any(|pair| pair[0] != pair[1]) {
             let what = "a material with several sets of texture coordinates is not supported";
             self.report.lacks(what, "the first is used", name);
@@ -103,7 +103,7 @@ impl Importer<'_> {
             return Ok(None);
         }
         let texture = match texture {
-            Some(info) => self.texture(&TextureUse::of(info), Channel::Colour, name),
+            Some(info) => self.texture(&TextureUse::read(info), Channel::Colour, name),
             None => None,
         };
         let texture = match colours {
@@ -228,7 +228,7 @@ impl Importer<'_> {
         principled.stretch = Stretch::AlongU;
         principled.anisotropic = self.share(strength, texture.as_ref(), BLUE, name)?;
         if let Some(info) = &texture {
-            principled.anisotropic_direction = self.texture(&TextureUse::of(info), Channel::Data, name);
+            principled.anisotropic_direction = self.texture(&TextureUse::read(info), Channel::Data, name);
         }
         let rotation = number(anisotropy, "anisotropyRotation").unwrap_or(0.0);
         principled.anisotropic_rotation = if rotation.is_finite() { rotation } else { 0.0 };
@@ -245,7 +245,7 @@ impl Importer<'_> {
     ) -> Result<Share, SceneError> {
         let factor = if factor.is_finite() { factor.clamp(0.0, 1.0) } else { 0.0 };
         let texture = match texture {
-            Some(info) if factor > 0.0 => self.texture(&TextureUse::of(info), channel, name),
+            Some(info) if factor > 0.0 => self.texture(&TextureUse::read(info), channel, name),
             _ => None,
         };
         Ok(match texture {
@@ -264,7 +264,7 @@ impl Importer<'_> {
         let [r, g, b, _] = base.base_color_factor.0;
         let scale = Rgb::new(r, g, b);
         let texture = match &base.base_color_texture {
-            Some(info) => self.texture(&TextureUse::of(info), Channel::Colour, name),
+            Some(info) => self.texture(&TextureUse::read(info), Channel::Colour, name),
             None => None,
         };
         let base_colour = match texture {
@@ -301,7 +301,7 @@ impl Importer<'_> {
                 let cutoff = source.alpha_cutoff.as_ref().map_or(0.5, |cutoff| cutoff.0);
                 if colours == VertexColours::WithAlpha && cutoff > 0.0 && factor > 0.0 {
                     let image = match texture {
-                        Some(info) => self.texture(&TextureUse::of(info), ALPHA, name),
+                        Some(info) => self.texture(&TextureUse::read(info), ALPHA, name),
                         None => None,
                     };
                     let cut = Some(cutoff / factor);

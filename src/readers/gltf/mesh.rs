@@ -125,7 +125,7 @@ pub(super) enum VertexColours {
 
 impl VertexColours {
     /// Returns which colours a primitive has.
-    pub fn of(document: &GltfFile, primitive: &Primitive) -> Result<VertexColours, SceneError> {
+    pub fn read(document: &GltfFile, primitive: &Primitive) -> Result<VertexColours, SceneError> {
         let colours = primitive.attributes.get(&Checked::Valid(Semantic::Colors(0)));
         Ok(match colours {
             None => VertexColours::None,

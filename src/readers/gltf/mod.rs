@@ -119,7 +119,7 @@ pub fn import(
         return Err(from.wrong(what, "leave time out"));
     }
     let mut report = Findings::default();
-    let clip = match Clip::of(&document) {
+    let clip = match Clip::read(&document) {
         Err(error) if options.time.is_none() && options.frame.is_none() => {
             report.lacks(&format!("the animation is damaged: {error}"), "the model stands still", "");
             Clip::default()

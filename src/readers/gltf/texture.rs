@@ -32,7 +32,7 @@ pub(super) struct TextureUse {
 }
 
 impl TextureUse {
-    pub fn of(info: &Info) -> TextureUse {
+    pub fn read(info: &Info) -> TextureUse {
         let transform = info.extensions.as_ref().and_then(|e| e.texture_transform.clone());
         TextureUse::new(info.index, info.tex_coord, transform)
     }

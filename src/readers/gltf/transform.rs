@@ -19,7 +19,7 @@ pub(super) enum Local {
 
 impl Local {
     /// Returns the transform of a node at rest. `source` is the node's JSON, whose numbers have double precision.
-    pub fn of(node: &Node, source: &Value) -> Local {
+    pub fn read(node: &Node, source: &Value) -> Local {
         match node.matrix {
             Some(matrix) => Local::Matrix(DMat4::from_cols_array(&precise(source, "matrix", matrix))),
             None => Local::Steps {
@@ -109,10 +109,10 @@ mod tests {
         let source = json!({ "translation": [4512344.2, 0, 1e39] });
         let expected = DVec3::new(4512344.2, 0.0, f64::INFINITY);
         assert!(
-            matches!(Local::of(&node, &source), Local::Steps { translation, .. } if translation == expected)
+            matches!(Local::read(&node, &source), Local::Steps { translation, .. } if translation == expected)
         );
         let rounded = f64::from(4512344.2f32);
-        let local = Local::of(&node, &Value::Null);
+        let local = Local::read(&node, &Value::Null);
         assert!(matches!(local, Local::Steps { translation, .. } if translation.x == rounded));
     }
 

@@ -48,12 +48,12 @@ pub(super) fn triangles(polygon: &[DVec2]) -> Cut {
         ranks[corner as usize] = points.len() as u32 - 1;
     }
     let mut sweep = Sweep::new(points, edges(&ranks));
-    let found = if sweep.run() { sweep.chains.triangles.clone() } else { hull(&sweep.chains) };
-    let area: i128 = found.iter().map(|t| sweep.chains.turn(*t)).sum();
+    let by_rank = if sweep.run() { sweep.chains.triangles.clone() } else { hull(&sweep.chains) };
+    let area: i128 = by_rank.iter().map(|t| sweep.chains.turn(*t)).sum();
     let next = grid.iter().cycle().skip(1);
     let double_area: i128 = grid.iter().zip(next).map(|(a, b)| turn([grid[0], *a, *b])).sum();
     let excess = (area - double_area) as f64;
-    let triangles = found.into_iter().map(|t| t.map(|rank| corners[rank as usize])).collect();
+    let triangles = by_rank.into_iter().map(|t| t.map(|rank| corners[rank as usize])).collect();
     Cut { triangles, crosses_itself: sweep.crosses || excess.abs() > ROUNDING * area as f64 }
 }
 

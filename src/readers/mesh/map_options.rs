@@ -85,8 +85,9 @@ fn reading(text: &str, find: impl Fn(&str) -> Option<PathBuf>) -> Result<Option<
     let ends = || std::iter::once(words.len()).chain(options.iter().copied());
     // Numbers may belong to the last option or to the name.
     let mut readings = (least..=start).rev().flat_map(|from| ends().map(move |to| (from, to)));
-    let found = readings.find_map(|(from, to)| Some((from, to, find((from < to).then(|| part(from, to))?)?)));
-    let (from, to, file) = match found {
+    let existing =
+        readings.find_map(|(from, to)| Some((from, to, find((from < to).then(|| part(from, to))?)?)));
+    let (from, to, file) = match existing {
         Some((from, to, path)) => (from, to, Ok(path)),
         None => {
             let to = options.first().copied().unwrap_or(words.len());

@@ -75,12 +75,12 @@ fn split_files(
     let mut at = 0;
     while at < starts.len() {
         let most = ends.len().min(at + MAX_WORDS);
-        let found = (at..most).rev().find_map(|last| {
+        let longest = (at..most).rev().find_map(|last| {
             let path = find(&text[starts[at]..ends[last]])?;
             Some((last, Ok(path)))
         });
         let is_end = |last: &usize| text[..ends[*last]].to_ascii_lowercase().ends_with(extension);
-        let (last, file) = found.unwrap_or_else(|| {
+        let (last, file) = longest.unwrap_or_else(|| {
             let last = (at..most).find(is_end).unwrap_or(ends.len() - 1);
             (last, Err(text[starts[at]..ends[last]].to_owned()))
         });

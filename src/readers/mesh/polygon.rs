@@ -21,17 +21,17 @@ pub(super) fn cut(corners: &[u32], position: impl Fn(&u32) -> DVec3, triangles: 
         let flat = flattened(&points);
         is_exact = flat.is_some() || !is_folded(&points);
         if let Some(flat) = flat.filter(|flat| !is_convex(flat)) {
-            let found;
-            (found, is_exact) = if flat.len() > MAX_CLIPPED {
-                let cut = large_polygon::triangles(&flat);
-                (cut.triangles, !cut.crosses_itself)
+            let cut;
+            (cut, is_exact) = if flat.len() > MAX_CLIPPED {
+                let large = large_polygon::triangles(&flat);
+                (large.triangles, !large.crosses_itself)
             } else {
                 let ears = ears(&flat);
                 let is_whole = is_whole(&flat, &ears);
                 (ears, is_whole)
             };
-            if !found.is_empty() {
-                triangles.extend(found.into_iter().map(|t| t.map(|corner| corners[corner as usize])));
+            if !cut.is_empty() {
+                triangles.extend(cut.into_iter().map(|t| t.map(|corner| corners[corner as usize])));
                 return is_exact;
             }
         }
@@ -56,9 +56,9 @@ fn ears(flat: &[DVec2]) -> Vec<[u32; 3]> {
 fn is_whole(flat: &[DVec2], triangles: &[[u32; 3]]) -> bool {
     let next = flat.iter().cycle().skip(1);
     let double_area: f64 = flat.iter().zip(next).map(|(a, b)| a.perp_dot(*b)).sum();
-    let found: f64 = triangles.iter().map(|t| turn(t.map(|i| flat[i as usize]))).sum();
+    let covered: f64 = triangles.iter().map(|t| turn(t.map(|i| flat[i as usize]))).sum();
     let longest = flat.iter().map(|p| p.length_squared()).fold(0.0, f64::max);
-    (found - double_area.abs()).abs() <= ROUNDING * longest
+    (covered - double_area.abs()).abs() <= ROUNDING * longest
 }
 
 /// True if parts of a polygon without an area in sum have one, as of a bow tie.

@@ -24,7 +24,7 @@ const PLAUSIBLE: std::ops::Range<f32> = 1e-15..1e15;
 /// Reads the STL file `bytes`; `path` is for messages. Names in `remarks` what is not read.
 pub fn read(bytes: &[u8], path: &Path, remarks: &mut Vec<Warning>) -> Result<RawMesh, SceneError> {
     let mut builder = SoupBuilder::default();
-    match BinaryStl::of(bytes) {
+    match BinaryStl::parse(bytes) {
         Some(file) => {
             file.records.iter().for_each(|record| builder.triangle(corners(record)));
             file.report(path, remarks);
@@ -40,7 +40,7 @@ pub fn read(bytes: &[u8], path: &Path, remarks: &mut Vec<Warning>) -> Result<Raw
 
 /// Returns true if the STL file `bytes` has colours of faces.
 pub(crate) fn has_colours(bytes: &[u8]) -> bool {
-    BinaryStl::of(bytes).is_some_and(|file| stl_colours::of_faces(file.header, file.records).is_some())
+    BinaryStl::parse(bytes).is_some_and(|file| stl_colours::of_faces(file.header, file.records).is_some())
 }
 
 /// A binary file.
@@ -56,7 +56,7 @@ struct BinaryStl<'a> {
 
 impl<'a> BinaryStl<'a> {
     /// Divides a binary file into its parts; `None` for a text.
-    fn of(bytes: &'a [u8]) -> Option<BinaryStl<'a>> {
+    fn parse(bytes: &'a [u8]) -> Option<BinaryStl<'a>> {
         let (header, rest) = bytes.split_at_checked(HEADER)?;
         let (count, rest) = rest.split_first_chunk()?;
         let stated = u32::from_le_bytes(*count) as usize;

@@ -11,8 +11,8 @@ impl Object {
     /// Returns the property and marks it as used.
     pub fn property(&self, name: &str) -> Option<&ObjectProperty> {
         // The last value counts if a file gives a parameter twice.
-        let found = self.properties.iter().rev().find(|p| p.name == name);
-        found.inspect(|p| p.used.set(true))
+        let last = self.properties.iter().rev().find(|p| p.name == name);
+        last.inspect(|p| p.used.set(true))
     }
 
     pub fn has(&self, name: &str) -> bool {

@@ -177,8 +177,8 @@ impl Converter<'_> {
         };
         let scale = bsdf.float("scale")?.unwrap_or(1.0) as f32;
         self.name_relief_rules(bsdf)?;
-        let found = texture.map(|texture| self.texture(&texture, 0)).transpose()?;
-        let relief = match found {
+        let map = texture.map(|texture| self.texture(&texture, 0)).transpose()?;
+        let relief = match map {
             Some(Reflectance::Textured { texture, .. }) if !self.contents.is_image(texture) => {
                 let what = "a relief from mesh attributes is not supported";
                 self.log.warn(&bsdf.place, what, "it is left out")?;

@@ -240,15 +240,15 @@ fn levelled(map: &OpenMap, channel: Channel, sources: &mut Vec<(PathBuf, u64)>) 
     if (base, gain) == (0.0, 1.0) {
         return None;
     }
-    let found = decoded(map, channel)?;
+    let decoded = decoded(map, channel)?;
     if !sources.iter().any(|source| source.0 == map.file) {
-        sources.push((map.file.clone(), found.hash));
+        sources.push((map.file.clone(), decoded.hash));
     }
-    let image = &found.image;
+    let image = &decoded.image;
     let texels: Vec<Rgb> =
         image.texels.iter().map(|texel| (texel * gain + base).clamp(Rgb::ZERO, Rgb::MAX)).collect();
     let image = DecodedImage { texels: Texels::new(image.width, &texels), ..*image };
-    Some(DecodedMap { image, ..found })
+    Some(DecodedMap { image, ..decoded })
 }
 
 /// True if an image is bluish, as normals are and heights are not.

@@ -71,8 +71,8 @@ impl SceneBuilder<'_> {
             return Err(place.wrong(what, "name them: first and second of a blend, base of a coated one"));
         };
         let texts = self.material_texts;
-        let found = texts.iter().find(|text| text.get_ref().name == *name);
-        self.described(found.ok_or_else(|| place.undefined("material", name))?, depth + 1)
+        let text = texts.iter().find(|text| text.get_ref().name == *name);
+        self.described(text.ok_or_else(|| place.undefined("material", name))?, depth + 1)
     }
 
     fn blended(&mut self, text: &MaterialText, depth: u32, place: &Location) -> Result<Material, SceneError> {

@@ -4,7 +4,7 @@ use super::source::SourceText;
 use crate::error::{Location, SceneError};
 
 /// Converts an error of the parser.
-pub(super) fn of(file: SourceText, error: &toml::de::Error) -> SceneError {
+pub(super) fn error(file: SourceText, error: &toml::de::Error) -> SceneError {
     let place = error.span().map_or(Location::file(file.path), |span| file.place(span));
     let message = error.message();
     if file.text.parse::<toml::Table>().is_err() {

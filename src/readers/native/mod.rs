@@ -37,7 +37,7 @@ pub(crate) use views::read as read_views;
 pub(super) fn read(path: &Path, log: &mut Log) -> Result<ScenePlan, SceneError> {
     let (text, hash) = read_text(path, &Location::file(path))?;
     let file = SourceText { path, text: &text };
-    let scene: SceneText = toml::from_str(&text).map_err(|error| mistake::of(file, &error))?;
+    let scene: SceneText = toml::from_str(&text).map_err(|error| mistake::error(file, &error))?;
     let mut builder = SceneBuilder::new(file, log, &scene)?;
     for material in &scene.material {
         let read = builder.material(material);

@@ -49,8 +49,7 @@ impl SceneBuilder<'_> {
         let mut named = NamedAppearances::default();
         let mut wanted: BTreeMap<usize, BTreeSet<String>> = BTreeMap::new();
         for text in materials {
-            let found = definitions.find(&text);
-            let name = match found {
+            let name = match definitions.find(&text) {
                 Some((name, number)) => {
                     wanted.entry(number).or_default().insert(name.clone());
                     name

@@ -57,7 +57,7 @@ pub fn read(path: &Path) -> Result<Vec<Result<DraftView, SceneError>>, SceneErro
         let what = "`camera` is a single table, as in a scene";
         return Err(Location::file(path).wrong(what, "write [[camera]] in double brackets for each view"));
     }
-    let mistake = |error: toml::de::Error| mistake::of(file, &error);
+    let mistake = |error: toml::de::Error| mistake::error(file, &error);
     // Other cameras than the first wrong one are read, too. Their mistakes have the line of the camera alone.
     let mut first = toml::from_str::<ListText<ViewText>>(&text).err().map(mistake);
     let list: ListText<Tried<ViewText>> = toml::from_str(&text).map_err(mistake)?;

@@ -224,7 +224,7 @@ fn try_damage(format: &str, count: u64) {
     }
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("fuzz").join(format!("damage-{format}-{first}"));
     let workplace = Workplace::new(folder);
-    let seeds: Vec<(Read, Seed)> = (seeds::of(format).into_iter())
+    let seeds: Vec<(Read, Seed)> = (seeds::seeds_of(format).into_iter())
         .filter_map(|seed| {
             let bytes = seed.pack(seed.bytes.clone());
             Some((read(&workplace, seed.extension, &bytes).ok()?, seed))

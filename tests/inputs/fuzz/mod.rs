@@ -156,7 +156,7 @@ impl Extent {
 /// Tries `count` cases of a target, or those that the environment asks for.
 fn fuzz(target: &str, count: u64) {
     listen();
-    let seeds = seeds::of(target);
+    let seeds = seeds::seeds_of(target);
     let extent = Extent::start(count);
     let first = extent.first;
     let name = format!("{target}-{first}");

@@ -77,7 +77,7 @@ const VIEWS: [&str; 2] = [
 ];
 
 /// Seeds of a target.
-pub fn of(target: &str) -> Vec<Seed> {
+pub fn seeds_of(target: &str) -> Vec<Seed> {
     match target {
         "toml" => valid("toml"),
         "views" => VIEWS.iter().map(|list| Seed::plain("json", *list)).collect(),
@@ -95,9 +95,9 @@ pub fn of(target: &str) -> Vec<Seed> {
         "job" => vec![Seed::plain("job", JOB)],
         "picture" => {
             // As many of each format: of damaged models fewest load.
-            let models = of("gltf");
-            let as_many = |format| iter::repeat_with(move || of(format)).flatten().take(models.len());
-            as_many("toml").chain(as_many("xml")).chain(of("gltf")).collect()
+            let models = seeds_of("gltf");
+            let as_many = |format| iter::repeat_with(move || seeds_of(format)).flatten().take(models.len());
+            as_many("toml").chain(as_many("xml")).chain(seeds_of("gltf")).collect()
         }
         other => panic!("no target {other}"),
     }

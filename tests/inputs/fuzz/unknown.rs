@@ -42,7 +42,7 @@ fn add(format: &str, count: u64) {
     let seeds: Vec<_> = match format {
         // All additions to pictures and PLY meshes begin with the same file.
         "exr" | "ply" => vec![(0, format, Vec::new())],
-        _ => (seeds::of(format).into_iter())
+        _ => (seeds::seeds_of(format).into_iter())
             .filter(|seed| format != "gltf" || seed.extension == "gltf")
             .filter(|seed| format != "stl" || seed.bytes.is_ascii())
             .filter_map(|seed| {

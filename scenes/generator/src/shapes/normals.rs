@@ -19,7 +19,7 @@ impl Shell {
         for (face, (&corners, uvs)) in self.triangles.iter().zip(&self.uvs).enumerate() {
             let vertices = [0, 1, 2].map(|k| {
                 let point = corners[k];
-                let normal = corner_normal(self, &face_normals, around.of(point), face, point, cos_crease);
+                let normal = corner_normal(self, &face_normals, around.faces(point), face, point, cos_crease);
                 let mut vertex = first[point as usize];
                 while vertex != u32::MAX && !same(&part, vertex, normal, uvs[k]) {
                     vertex = next[vertex as usize];
@@ -103,7 +103,7 @@ impl FacesAroundPoints {
         FacesAroundPoints { start, faces }
     }
 
-    fn of(&self, point: u32) -> &[u32] {
+    fn faces(&self, point: u32) -> &[u32] {
         &self.faces[self.start[point as usize] as usize..self.start[point as usize + 1] as usize]
     }
 }

@@ -68,9 +68,9 @@ fn uses(material: &Material, textures: &Textures) -> Vec<AttributeUse> {
         }
     }
     let of_factor = |(texture, scale): (TextureId, Rgb)| {
-        let found = textures.attribute(texture)?;
+        let source = textures.attribute(texture)?;
         let limit = scale.max(Rgb::splat(f32::MIN_POSITIVE)).recip();
-        Some(AttributeUse { attribute: found.attribute, limit })
+        Some(AttributeUse { attribute: source.attribute, limit })
     };
     factors.into_iter().filter_map(of_factor).collect()
 }

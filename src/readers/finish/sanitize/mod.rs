@@ -52,7 +52,7 @@ pub(crate) fn sanitize(
     }
     drop_coincident_emitters(draft, &draft.main_file(), log)?;
     set_coordinates(draft);
-    let coordinates = LocalCoordinates::of(draft);
+    let coordinates = LocalCoordinates::around(draft);
     let (mut lost, mut triangles) = drop_places(draft, &coordinates, &mut report);
     for mesh in &mut draft.meshes {
         let before = report;

@@ -35,7 +35,7 @@ struct MeshoptView {
 
 impl MeshoptView {
     /// Returns the statements about a view; `None` for a view that is not compressed.
-    fn of(view: &View) -> Option<Result<MeshoptView, String>> {
+    fn parse(view: &View) -> Option<Result<MeshoptView, String>> {
         let others = &view.extensions.as_ref()?.others;
         let value = NAMES.iter().find_map(|name| others.get(*name))?;
         Some(serde_json::from_value(value.clone()).map_err(|error| error.to_string()))
@@ -65,7 +65,7 @@ impl MeshoptView {
 pub(super) fn views(root: &Root, buffers: &[Vec<u8>]) -> Result<BTreeMap<usize, Vec<u8>>, String> {
     let mut views = BTreeMap::new();
     for (i, view) in root.buffer_views.iter().enumerate() {
-        let Some(compression) = MeshoptView::of(view) else { continue };
+        let Some(compression) = MeshoptView::parse(view) else { continue };
         let wrong = |problem: &str| format!("buffer view {i} {problem}");
         let compression =
             compression.map_err(|error| wrong(&format!("is compressed in an unknown way: {error}")))?;
@@ -84,10 +84,10 @@ pub(super) fn views(root: &Root, buffers: &[Vec<u8>]) -> Result<BTreeMap<usize, 
 
 /// True if a buffer merely stands for the bytes of compressed views, so that nothing reads it.
 pub(super) fn is_placeholder(root: &Root, buffer: usize) -> bool {
-    let compressions = || root.buffer_views.iter().filter_map(MeshoptView::of);
+    let compressions = || root.buffer_views.iter().filter_map(MeshoptView::parse);
     let mut views = root.buffer_views.iter().filter(|view| view.buffer.value() == buffer).peekable();
     views.peek().is_some()
-        && views.all(|view| MeshoptView::of(view).is_some())
+        && views.all(|view| MeshoptView::parse(view).is_some())
         && !compressions()
             .any(|compression| compression.is_ok_and(|compression| compression.buffer == buffer))
 }
