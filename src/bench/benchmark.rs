@@ -1,8 +1,9 @@
 //! A benchmark, and its inputs.
 
 use super::machine::Facts;
-use super::report::{Report, Table};
-use super::study::{Results, Study, StudyError};
+use super::report::Table;
+use super::results::Results;
+use super::study::{Study, StudyError};
 use render::session::Session;
 use std::path::PathBuf;
 
@@ -84,19 +85,20 @@ impl Benchmark {
         }
     }
 
-    /// Makes a report of measured tables.
-    pub fn report(&self, context: &Context, tables: Vec<Table>) -> Report {
+    /// Makes results of measured tables.
+    pub fn results(&self, context: &Context, tables: &[Table]) -> Results {
         let mut facts = context.machine.clone();
         facts.push(("samples per case".to_owned(), context.settings.repeats.to_string()));
-        if let Some(Session { world, .. }) = context.session {
-            let triangles = world.scene.seen_triangle_count();
-            facts.push(("triangles".to_owned(), triangles.to_string()));
+        let scene = context.session.map(|session| &session.world.scene);
+        if let Some(scene) = scene {
+            facts.push(("triangles".to_owned(), scene.seen_triangle_count().to_string()));
         }
-        Report {
-            benchmark: self.name.to_owned(),
-            scene: context.session.map(|s| s.world.scene.name.clone()),
-            facts,
-            tables,
-        }
+        let title = scene.map_or(self.name.to_owned(), |scene| format!("{} on {}", self.name, scene.name));
+        let mut results = Results::new(&title, facts, "");
+        (results.json["benchmark"], results.json["scene"]) =
+            (self.name.into(), scene.map(|scene| scene.name.clone()).into());
+        results.add(tables);
+        results.conclude();
+        results
     }
 }

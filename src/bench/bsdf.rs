@@ -22,99 +22,54 @@ const DIRECTIONS: usize = 1024;
 fn run(context: &Context) -> Vec<Table> {
     let scene = Scene { materials: kinds(), ..Scene::default() };
     let materials = Materials::new(&scene);
-    let mut dice = Dice(6);
-    let mut part = || dice.unit();
-    let directions: Vec<Vec3> = (0..DIRECTIONS)
-        .map(|_| {
-            let v = uniform_sphere(Vec2::new(part(), part()));
-            Vec3::new(v.x, v.y, v.z.abs().max(1e-3))
-        })
-        .collect();
-    let pair = |i: usize| (directions[i], directions[(i * 7 + 1) % DIRECTIONS]);
-    type Call = fn(&Bsdf, Vec3, Vec3);
-    let calls: [(&str, Call); 3] = [
-        ("evaluate", |bsdf, wo, wi| {
-            black_box(bsdf.eval_pdf(wo, wi));
-        }),
-        ("sample", |bsdf, wo, u| {
-            black_box(bsdf.sample(wo, u.z, Vec2::new(0.5 + 0.5 * u.x, 0.5 + 0.5 * u.y)));
-        }),
-        ("bound", |bsdf, wo, b| {
-            let bound = DirectionBound { cos_i_max: b.z, cos_i_min: 0.5 * b.z, cos_mirror_max: b.x };
-            black_box(bsdf.bound(wo, &bound));
-        }),
-    ];
-    let packets = DirectionPackets::new(&directions);
-    let (scene, materials, pair) = (&scene, &materials, &pair);
-    let mut cases = Vec::new();
-    for (what, call) in calls {
-        let against = cases.len();
-        for (i, material) in scene.materials.iter().enumerate() {
-            let bsdf = materials.at(MaterialId(i as u32), Vec2::ZERO);
-            cases.push(Case::new(&[what, &material.name], against, DIRECTIONS as f64, move || {
-                for i in 0..DIRECTIONS {
-                    let (wo, wi) = pair(i);
-                    call(&bsdf, wo, wi);
-                }
-            }));
-        }
-    }
-    let single = Experiment {
+    let packets = DirectionPackets::new();
+    let experiment = Experiment {
         title: "Materials",
-        about: "Ratio to a diffuse surface.",
-        labels: &["call", "material"],
+        about: "Sixteen directions from one viewpoint, with its preparation. Ratio to one direction at a time.",
+        labels: &["call", "material", "directions"],
         unit: "M/s",
         scale: 1e-6,
         figures: &[],
         clock: Clock::Thread,
-        cases,
+        cases: cases(&scene, &materials, &packets),
     };
-    let together = Experiment {
-        title: "Materials in sixteen directions",
-        about: "Directions from one viewpoint, with its preparation. Ratio to one direction at a time.",
-        labels: &["call", "material", "directions"],
-        cases: cases_of_packets(scene, materials, &packets),
-        ..single
-    };
-    vec![single.measure(&context.settings), together.measure(&context.settings)]
+    vec![experiment.measure(&context.settings)]
 }
 
-/// Returns the cases of sixteen directions at once, each after that of one at a time.
-fn cases_of_packets<'a>(
-    scene: &'a Scene,
-    materials: &'a Materials,
-    packets: &'a DirectionPackets,
-) -> Vec<Case<'a>> {
+/// Returns the cases of one direction and of sixteen directions at once.
+fn cases<'a>(scene: &'a Scene, materials: &'a Materials, packets: &'a DirectionPackets) -> Vec<Case<'a>> {
     let mut cases = Vec::new();
     for (i, material) in scene.materials.iter().enumerate() {
         let bsdf = materials.at(MaterialId(i as u32), Vec2::ZERO);
-        let mut case = |labels: [&str; 3], against, work: fn(&Bsdf, &DirectionPackets)| {
-            cases.push(Case::new(&labels, against, DIRECTIONS as f64, move || work(&bsdf, packets)));
+        let mut case = |call: &str, lanes: usize, work: fn(&Bsdf, Vec3, &Vec3x16, &Vec2x16)| {
+            let against = cases.len() - usize::from(lanes > 1);
+            let labels = [call, &material.name, &lanes.to_string()];
+            cases.push(Case::new(&labels, against, DIRECTIONS as f64, move || {
+                packets.each().for_each(|(wo, wi, u)| work(&bsdf, wo, wi, u));
+            }));
         };
-        let first = 4 * i;
-        case(["evaluate", &material.name, "1"], first, |bsdf, packets| {
-            for (wo, wi, _) in packets.each() {
-                (0..LANES).for_each(|l| {
-                    black_box(bsdf.eval_pdf(wo, wi.get(l)));
-                });
-            }
+        case("evaluate", 1, |bsdf, wo, wi, _| {
+            (0..LANES).for_each(|lane| {
+                black_box(bsdf.eval_pdf(wo, wi.get(lane)));
+            });
         });
-        case(["evaluate", &material.name, "16"], first, |bsdf, packets| {
-            for (wo, wi, _) in packets.each() {
-                black_box(&Bsdfs16::new(Vec3x16::splat(wo), |_| *bsdf).eval_pdf(wi, !0));
-            }
+        case("evaluate", LANES, |bsdf, wo, wi, _| {
+            black_box(&Bsdfs16::new(Vec3x16::splat(wo), |_| *bsdf).eval_pdf(wi, !0));
         });
-        case(["sample", &material.name, "1"], first + 2, |bsdf, packets| {
-            for (wo, wi, u) in packets.each() {
-                (0..LANES).for_each(|l| {
-                    black_box(bsdf.sample(wo, wi.z[l], u.get(l)));
-                });
-            }
+        case("sample", 1, |bsdf, wo, wi, u| {
+            (0..LANES).for_each(|lane| {
+                black_box(bsdf.sample(wo, wi.z[lane], u.get(lane)));
+            });
         });
-        case(["sample", &material.name, "16"], first + 2, |bsdf, packets| {
-            for (wo, wi, u) in packets.each() {
-                black_box(&Bsdfs16::new(Vec3x16::splat(wo), |_| *bsdf).sample(&wi.z, u, !0));
-            }
+        case("sample", LANES, |bsdf, wo, wi, u| {
+            black_box(&Bsdfs16::new(Vec3x16::splat(wo), |_| *bsdf).sample(&wi.z, u, !0));
+        });
+        case("bound", 1, |bsdf, wo, wi, _| {
+            (0..LANES).for_each(|lane| {
+                let b = wi.get(lane);
+                let bound = DirectionBound { cos_i_max: b.z, cos_i_min: 0.5 * b.z, cos_mirror_max: b.x };
+                black_box(bsdf.bound(wo, &bound));
+            });
         });
     }
     cases
@@ -129,8 +84,14 @@ struct DirectionPackets {
 }
 
 impl DirectionPackets {
-    /// Packs directions.
-    fn new(directions: &[Vec3]) -> DirectionPackets {
+    /// Makes random directions above the surface.
+    fn new() -> DirectionPackets {
+        let mut dice = Dice(6);
+        let mut direction = |_| {
+            let v = uniform_sphere(Vec2::new(dice.unit(), dice.unit()));
+            Vec3::new(v.x, v.y, v.z.abs().max(1e-3))
+        };
+        let directions: Vec<Vec3> = (0..DIRECTIONS).map(&mut direction).collect();
         let mut packets = DirectionPackets { wo: Vec::new(), wi: Vec::new(), u: Vec::new() };
         for (i, packet) in directions.chunks_exact(LANES).enumerate() {
             let (mut wi, mut u) = (Vec3x16::ZERO, Vec2x16::default());

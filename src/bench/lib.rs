@@ -1,9 +1,9 @@
 //! `lightsplat bench`: speed of parts of the renderer, time and error of whole images.
 //!
-//! A benchmark is an entry of [`REGISTRY`]. Benchmarks of parts measure cases against each other (`measure`) and return
-//! a [`Report`], which [`export`] writes. The first figure of their tables is a ratio, since ratios depend less on the
-//! machine than rates do. Studies ([`study`]) ask questions about whole images: they render, store and judge the
-//! images, and write a page. No image depends on this crate.
+//! A benchmark is an entry of [`REGISTRY`], and gives [`Results`]. Benchmarks of parts measure cases against each other
+//! (`measure`). The first figure of their tables is a ratio, since ratios depend less on the machine than rates do.
+//! Studies ([`study`]) ask questions about whole images: they render, store and judge the images. No image depends on
+//! this crate.
 
 #![forbid(unsafe_code)]
 
@@ -11,10 +11,8 @@ mod benchmark;
 mod bounds;
 mod bsdf;
 mod budget;
-mod choice;
+mod calibrate;
 mod document;
-mod escape;
-pub mod export;
 mod extremes;
 mod growth;
 mod hsh;
@@ -22,26 +20,26 @@ mod lit_scene;
 pub mod machine;
 mod measure;
 mod plot;
-mod prices;
 mod race;
 mod report;
+mod results;
 mod shadow;
 pub mod study;
 mod table1;
-mod thumbnail;
 mod trade;
 mod trees;
 
 pub use benchmark::{Benchmark, Context, Kind, Scenes, Settings};
-pub use report::{Report, Row, Spread, Table};
+pub use report::{Row, Spread, Table};
+pub use results::Results;
 
 /// All benchmarks.
-pub const REGISTRY: [Benchmark; 13] = [
+pub const REGISTRY: [Benchmark; 12] = [
     table1::BENCHMARK,
     trade::BENCHMARK,
     race::BENCHMARK,
     extremes::BENCHMARK,
-    choice::BENCHMARK,
+    calibrate::BENCHMARK,
     growth::BENCHMARK,
     shadow::BENCHMARK,
     bounds::BENCHMARK,
@@ -49,7 +47,6 @@ pub const REGISTRY: [Benchmark; 13] = [
     bsdf::BENCHMARK,
     hsh::BENCHMARK,
     budget::BENCHMARK,
-    prices::BENCHMARK,
 ];
 
 /// Finds a benchmark by its name.

@@ -8,31 +8,11 @@ use time::UtcDateTime;
 /// Named facts.
 pub type Facts = Vec<(String, String)>;
 
-/// Levels of x86-64, and whether the program was compiled for their features.
-const LEVELS: [(&str, &[bool]); 3] = [
-    ("x86-64-v2", &[cfg!(target_feature = "sse4.2"), cfg!(target_feature = "popcnt")]),
-    (
-        "x86-64-v3",
-        &[
-            cfg!(target_feature = "avx2"),
-            cfg!(target_feature = "bmi1"),
-            cfg!(target_feature = "bmi2"),
-            cfg!(target_feature = "f16c"),
-            cfg!(target_feature = "fma"),
-            cfg!(target_feature = "lzcnt"),
-            cfg!(target_feature = "movbe"),
-        ],
-    ),
-    (
-        "x86-64-v4",
-        &[
-            cfg!(target_feature = "avx512f"),
-            cfg!(target_feature = "avx512bw"),
-            cfg!(target_feature = "avx512cd"),
-            cfg!(target_feature = "avx512dq"),
-            cfg!(target_feature = "avx512vl"),
-        ],
-    ),
+/// Levels of x86-64, and whether the program was compiled for features that came with them.
+const LEVELS: [(&str, bool); 3] = [
+    ("x86-64-v2", cfg!(target_feature = "sse4.2")),
+    ("x86-64-v3", cfg!(target_feature = "avx2") && cfg!(target_feature = "fma")),
+    ("x86-64-v4", cfg!(target_feature = "avx512bw") && cfg!(target_feature = "avx512vl")),
 ];
 
 /// Returns the commit that the program was built from, if it was built in a git checkout.
@@ -48,7 +28,7 @@ pub fn version() -> String {
 
 /// Returns what the program was compiled for: the largest level of x86-64 whose features the compiler might use.
 pub fn compiled_for() -> String {
-    let level = LEVELS.iter().take_while(|(_, features)| features.iter().all(|is_on| *is_on)).last();
+    let level = LEVELS.iter().take_while(|(_, is_on)| *is_on).last();
     match level {
         Some((level, _)) if cfg!(target_arch = "x86_64") => (*level).to_owned(),
         None if cfg!(target_arch = "x86_64") => "x86-64, any processor, which is slow".to_owned(),

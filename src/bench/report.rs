@@ -1,19 +1,7 @@
-//! Results of a benchmark of parts.
+//! Tables of measured parts.
 
+use crate::document::{Document, Grid};
 use serde::Serialize;
-
-/// All tables of a benchmark.
-#[derive(Clone, Debug, Serialize)]
-pub struct Report {
-    /// Name of the benchmark.
-    pub benchmark: String,
-    /// Name of the scene, if the benchmark needs one.
-    pub scene: Option<String>,
-    /// Other conditions that the figures depend on, each with its name.
-    pub facts: Vec<(String, String)>,
-    /// The measured tables.
-    pub tables: Vec<Table>,
-}
 
 /// Cases measured against each other.
 #[derive(Clone, Debug, Serialize)]
@@ -83,14 +71,12 @@ impl Spread {
 }
 
 impl Table {
-    /// Returns the heads of the columns: labels, ratio with quartiles, rate with relative spread, further figures.
-    pub fn heads(&self) -> Vec<String> {
-        let fixed = ["ratio".to_owned(), "quartiles".to_owned(), self.unit.clone(), "spread".to_owned()];
-        self.labels.iter().chain(&fixed).chain(&self.figures).cloned().collect()
-    }
-
-    /// Returns the cells of all rows under [`Table::heads`].
-    pub fn cells(&self) -> Vec<Vec<String>> {
+    /// Adds the table to a document: labels, ratio with quartiles, rate with relative spread, further figures.
+    pub fn tell(&self, document: &mut Document) {
+        document.heading(2, &self.title);
+        document.text(&self.about);
+        let fixed = ["ratio", "quartiles", &self.unit, "spread"].map(str::to_owned);
+        let heads = self.labels.iter().chain(&fixed).chain(&self.figures).cloned().collect();
         let cells = |row: &Row| {
             let fixed = [
                 number(row.ratio.median),
@@ -101,7 +87,9 @@ impl Table {
             let figures = row.figures.iter().map(|f| f.map_or_else(String::new, number));
             row.labels.iter().cloned().chain(fixed).chain(figures).collect()
         };
-        self.rows.iter().map(cells).collect()
+        let rows = self.rows.iter().map(cells).collect();
+        document.grid(&Grid { names: self.labels.len(), heads, rows });
+        self.warnings.iter().for_each(|warning| document.text(&format!("*warning: {warning}*")));
     }
 }
 

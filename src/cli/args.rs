@@ -105,7 +105,8 @@ pub enum Command {
 #[command(after_long_help = exit::HELP)]
 pub struct RenderArgs {
     /// Scene file: glTF (.glb, .gltf), mesh (.obj, .ply, .stl), lightsplat TOML (.toml) or Mitsuba (.xml). The name of
-    /// a built-in scene works, too: apartment, cornell, furnace, glass, hall, kitchen, knot, nave, terrace
+    /// a built-in scene works, too: apartment, cornell, furnace, glass, hall, kitchen, knot, nave,
+    /// plaza, terrace
     pub scene: PathBuf,
     /// Image to write. FILE.exr holds 32-bit float radiance, and FILE.png is written with it. FILE.png alone is
     /// tone-mapped. `-` is standard output. `####` or `%04d` stands for the number of --frame [default: the name of the
@@ -292,7 +293,8 @@ pub enum VerifyAgainst {
 #[command(after_long_help = exit::HELP)]
 pub struct InfoArgs {
     /// Scene file: glTF (.glb, .gltf), mesh (.obj, .ply, .stl), lightsplat TOML (.toml) or Mitsuba (.xml). The name of
-    /// a built-in scene works, too: apartment, cornell, furnace, glass, hall, kitchen, knot, nave, terrace
+    /// a built-in scene works, too: apartment, cornell, furnace, glass, hall, kitchen, knot, nave,
+    /// plaza, terrace
     pub scene: PathBuf,
     /// Print JSON
     #[arg(long)]

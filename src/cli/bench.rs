@@ -6,7 +6,6 @@ use super::outputs::Inputs;
 use super::{bench_args, files, opened, study, talk, threads};
 use anyhow::anyhow;
 use base::film::atomic;
-use bench::export::{WRITERS, terminal};
 use bench::{Context, Kind, Settings, machine};
 use readers::LoadOptions;
 use std::path::PathBuf;
@@ -36,7 +35,7 @@ pub fn run(args: BenchArgs) -> Result<(), Failure> {
             "bench {name}: the options under \"Studies\" would have no effect"
         )));
     }
-    let exports = [&args.export_json, &args.export_csv, &args.export_markdown, &args.export_html];
+    let exports = [&args.export_json, &args.export_markdown];
     for path in exports.into_iter().flatten() {
         atomic::check_writable(path).map_err(Failure::output)?;
     }
@@ -58,16 +57,15 @@ pub fn run(args: BenchArgs) -> Result<(), Failure> {
     if let Some(opened) = &session {
         Inputs::of_session(&opened.session).check_apart(files())?;
     }
-    let report = pool.install(|| {
+    let results = pool.install(|| {
         let session = session.as_ref().map(|opened| &opened.session);
         let context = Context { session, settings, machine, say: &|what| talk::note(what) };
-        benchmark.report(&context, measure(&context))
+        benchmark.results(&context, &measure(&context))
     });
-    talk::print(&terminal(&report))?;
-    for (format, path) in WRITERS.iter().zip(exports) {
-        if let Some(path) = path {
-            files::write(path, &format(&report))?;
-        }
+    let (json, markdown) = (format!("{:#}\n", results.json), results.document.markdown());
+    talk::print(markdown)?;
+    for (path, text) in exports.into_iter().zip([&*json, markdown]) {
+        path.as_deref().map_or(Ok(()), |path| files::write(path, text))?;
     }
     Ok(())
 }

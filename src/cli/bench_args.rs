@@ -31,15 +31,9 @@ pub struct BenchArgs {
     /// Write all results, including every sample
     #[arg(long, value_name = "FILE")]
     pub export_json: Option<PathBuf>,
-    /// Write one line per case
-    #[arg(long, value_name = "FILE")]
-    pub export_csv: Option<PathBuf>,
     /// Write the tables
     #[arg(long, value_name = "FILE")]
     pub export_markdown: Option<PathBuf>,
-    /// Write a page with plots
-    #[arg(long, value_name = "FILE")]
-    pub export_html: Option<PathBuf>,
     /// Options of studies.
     #[command(flatten)]
     pub study: StudyArgs,
@@ -49,8 +43,7 @@ pub struct BenchArgs {
 #[derive(Clone, Debug, Default, Args, PartialEq)]
 #[command(next_help_heading = "Studies")]
 pub struct StudyArgs {
-    /// Folder for the page, the table and the images. Images that are already there are not rendered again [default:
-    /// out/NAME]
+    /// Folder for the tables, plots and images. Images that are already there are not rendered again [default: out/NAME]
     #[arg(short, long, value_name = "FOLDER")]
     pub output: Option<PathBuf>,
     /// Folder of the scenes that are given by name [default: scenes]
@@ -65,9 +58,6 @@ pub struct StudyArgs {
     /// Maximum seconds of path tracing per reference [default: 1800]
     #[arg(long, value_name = "SECONDS", value_parser = parse_seconds)]
     pub reference_seconds: Option<f64>,
-    /// Number of combinations of settings that `trade` samples [default: 32]
-    #[arg(long, value_name = "N")]
-    pub samples: Option<u32>,
     /// Vary only this setting, in `trade` or `extremes`. May be repeated. A wrong name prints the list of settings
     #[arg(long = "knob", value_name = "NAME")]
     pub knobs: Vec<String>,
@@ -94,7 +84,7 @@ mod tests {
     use super::super::args::Cli;
     use super::*;
     use bench::Settings;
-    use bench::study::{ReferenceSettings, SAMPLES};
+    use bench::study::ReferenceSettings;
     use clap::CommandFactory;
 
     #[test]
@@ -108,7 +98,6 @@ mod tests {
             ("seconds", defaults.seconds.to_string()),
             ("reference-spp", reference.spp.to_string()),
             ("reference-seconds", reference.seconds.to_string()),
-            ("samples", SAMPLES.to_string()),
         ] {
             let argument = bench.get_arguments().find(|a| a.get_long() == Some(option)).unwrap();
             let stated = argument.get_help().unwrap().to_string();

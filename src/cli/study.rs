@@ -2,11 +2,11 @@
 
 use super::bench_args::BenchArgs;
 use super::exit::Failure;
-use super::files::{save, write};
+use super::files::write;
 use super::{interrupt, talk, threads};
 use anyhow::{Context as _, anyhow};
 use base::progress::Control;
-use bench::study::{PeerFigure, Plan, ReferenceSettings, SAMPLES, Study, StudyError, file_of};
+use bench::study::{PeerFigure, Plan, ReferenceSettings, Study, StudyError, file_of};
 use bench::{Benchmark, Kind, Scenes};
 use render::session::OpenError;
 use std::path::{Path, PathBuf};
@@ -15,10 +15,9 @@ use std::sync::Arc;
 /// Runs the study.
 pub fn run(benchmark: &Benchmark, args: BenchArgs) -> Result<(), Failure> {
     let name = benchmark.name;
-    let exports = [&args.export_json, &args.export_csv, &args.export_markdown, &args.export_html];
-    if exports.into_iter().any(Option::is_some) || args.seconds.is_some() {
+    if args.export_json.is_some() || args.export_markdown.is_some() || args.seconds.is_some() {
         return Err(Failure::usage(anyhow!(
-            "bench {name} writes JSON, Markdown and HTML into --output FOLDER, and has no --seconds"
+            "bench {name} writes JSON and Markdown into --output FOLDER, and has no --seconds"
         )));
     }
     if args.study.with.is_some() && name != "race" {
@@ -55,7 +54,6 @@ pub fn run(benchmark: &Benchmark, args: BenchArgs) -> Result<(), Failure> {
             spp: args.study.reference_spp.unwrap_or(defaults.spp),
             seconds: args.study.reference_seconds.unwrap_or(defaults.seconds),
         },
-        samples: args.study.samples.unwrap_or(SAMPLES),
         knobs: args.study.knobs,
         peers: peers.unwrap_or_default(),
     };
@@ -66,12 +64,11 @@ pub fn run(benchmark: &Benchmark, args: BenchArgs) -> Result<(), Failure> {
     let markdown = results.document.markdown();
     talk::print(markdown)?;
     let file = |extension: &str| folder.join(name).with_extension(extension);
-    for (name, bytes) in results.document.files() {
-        save(&folder.join(name), bytes)?;
+    for (name, text) in results.document.files() {
+        write(&folder.join(name), text)?;
     }
     write(&file("json"), &format!("{:#}\n", results.json))?;
-    write(&file("md"), markdown)?;
-    write(&file("html"), &results.document.html())
+    write(&file("md"), markdown)
 }
 
 /// Returns the scenes given, else the study's own.
@@ -85,15 +82,10 @@ fn scene_files(args: &BenchArgs, scenes: &[&str]) -> Vec<PathBuf> {
 
 fn failure(error: StudyError) -> Failure {
     match error {
-        StudyError::Open(OpenError::Scene(_))
-        | StudyError::Compare(_)
-        | StudyError::Unreadable { .. }
-        | StudyError::Figures { .. } => Failure::input(error),
-        StudyError::Knob { .. } => Failure::usage(error),
-        StudyError::Open(OpenError::Build { .. }) | StudyError::Denoise(_) | StudyError::Threads { .. } => {
-            Failure::render(error)
-        }
-        StudyError::File { .. } | StudyError::Write(_) => Failure::output(error),
+        StudyError::Open(OpenError::Scene(_)) | StudyError::Input(_) => Failure::input(error),
+        StudyError::Usage(_) => Failure::usage(error),
+        StudyError::Open(OpenError::Build { .. }) | StudyError::Render(_) => Failure::render(error),
+        StudyError::Output(_) => Failure::output(error),
         StudyError::Interrupted => Failure::interrupted(error),
     }
 }

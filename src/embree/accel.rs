@@ -6,6 +6,7 @@ use super::raw_scene::RawScene;
 use super::ray::{ALL_GEOMETRY, OCCLUDING, without_hit};
 use super::triangles::{self, TriangleMesh};
 use super::{BuildQuality, Device, EmbreeError, Hit, Ray, Width};
+use base::stats::meter::{self, Query};
 use embree4_sys as sys;
 use glam::Vec3;
 
@@ -84,7 +85,8 @@ impl Accel {
         let mut rayhit = without_hit(ray);
         // SAFETY: the scene is committed; the ray is ours, has the library's layout (the version is checked)
         // and is 16-byte aligned by its type; null arguments stand for the defaults.
-        unsafe { sys::rtcIntersect1(self.scene(), &mut rayhit, std::ptr::null_mut()) };
+        let trace = || unsafe { sys::rtcIntersect1(self.scene(), &mut rayhit, std::ptr::null_mut()) };
+        meter::query(Query::Hits, || 1, trace);
         let hit = &rayhit.hit;
         (hit.geomID != sys::RTC_INVALID_GEOMETRY_ID).then_some(Hit {
             t: rayhit.ray.tfar,
@@ -105,7 +107,8 @@ impl Accel {
             return false;
         };
         // SAFETY: as for `rtcIntersect1` above.
-        unsafe { sys::rtcOccluded1(self.scene(), &mut shadow_ray, std::ptr::null_mut()) };
+        let trace = || unsafe { sys::rtcOccluded1(self.scene(), &mut shadow_ray, std::ptr::null_mut()) };
+        meter::query(Query::Shadows, || 1, trace);
         // Embree marks an occluded ray by `tfar` = -inf. A traceable ray never starts with it, since t_near <= t_far.
         shadow_ray.tfar == f32::NEG_INFINITY
     }

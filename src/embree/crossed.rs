@@ -7,6 +7,7 @@ use super::numbers::{Numbers, OwnNumbers};
 use super::occluder::{CONTEXT, Query, ids, word};
 use super::ray::ALL_GEOMETRY;
 use super::{Accel, Hit, Ray};
+use base::stats::meter;
 use embree4_sys as sys;
 
 impl Accel {
@@ -32,7 +33,8 @@ impl Accel {
         let mut arguments = query.arguments(false, pass_on::<N, Visit>);
         // SAFETY: the scene is committed; ray, arguments and the query they point to are ours, outlive the call and
         // have the library's layout; the filter fits the query's record.
-        unsafe { sys::rtcOccluded1(self.scene(), &mut segment, &mut arguments) };
+        let trace = || unsafe { sys::rtcOccluded1(self.scene(), &mut segment, &mut arguments) };
+        meter::query(meter::Query::Hits, || 1, trace);
         segment.tfar != f32::NEG_INFINITY
     }
 }

@@ -10,6 +10,7 @@ use super::numbers::{HitIds, Numbers, OwnNumbers, PlacedNumbers};
 use super::query::query_flags;
 use super::ray::OCCLUDING;
 use super::{Accel, Ray, Rays16, Width};
+use base::stats::meter;
 use embree4_sys as sys;
 
 /// Identifier of a triangle of an [`Accel`].
@@ -137,7 +138,8 @@ impl Accel {
         let mut arguments = query.arguments(false, record_occluder::<N>);
         // SAFETY: the scene is committed; ray, arguments and the query they point to are ours, outlive
         // the call and have the library's layout; the filter fits the query's record.
-        unsafe { sys::rtcOccluded1(self.scene(), &mut shadow_ray, &mut arguments) };
+        let trace = || unsafe { sys::rtcOccluded1(self.scene(), &mut shadow_ray, &mut arguments) };
+        meter::query(meter::Query::Shadows, || 1, trace);
         (shadow_ray.tfar == f32::NEG_INFINITY).then_some(query.found)
     }
 

@@ -3,9 +3,9 @@
 //! Rays are stored in the library's layout, copied (a query writes to them) and traced, with no other work.
 
 use super::packet::LaneMask;
-use super::query::{EmbreePacket, HitLanes, intersect_arguments, occluded_arguments};
-use super::ray::{ALL_GEOMETRY, OCCLUDING, without_hit};
-use super::{Accel, Hits16, Rays16, Width};
+use super::query::{EmbreePacket, occluded_arguments};
+use super::ray::OCCLUDING;
+use super::{Accel, Rays16, Width};
 use embree4_sys as sys;
 
 /// Rays in the layout of queries of one width.
@@ -22,32 +22,19 @@ impl PreparedRays {
     /// Stores the rays in the given lanes of `packets`, in order, for [`PreparedRays::occluded`]. Narrower packets are
     /// cut from them. Packets without traceable rays are left out.
     pub fn new<'a>(packets: impl IntoIterator<Item = (&'a Rays16, u16)>, width: Width) -> PreparedRays {
-        PreparedRays::with_mask(packets, width, OCCLUDING)
-    }
-
-    /// Stores rays like [`PreparedRays::new`], for [`PreparedRays::hits`].
-    pub fn for_hits<'a>(packets: impl IntoIterator<Item = (&'a Rays16, u16)>, width: Width) -> PreparedRays {
-        PreparedRays::with_mask(packets, width, ALL_GEOMETRY)
-    }
-
-    fn with_mask<'a>(
-        packets: impl IntoIterator<Item = (&'a Rays16, u16)>,
-        width: Width,
-        mask: u32,
-    ) -> PreparedRays {
         let packets = packets.into_iter();
         PreparedRays(match width {
             Width::One => Form::One(
                 packets
                     .flat_map(|(rays, valid)| {
                         let valid = rays.lanes(valid).mask_where(|_| true);
-                        base::math::lanes_in(valid).filter_map(move |i| rays.get(i).to_embree(mask))
+                        base::math::lanes_in(valid).filter_map(move |i| rays.get(i).to_embree(OCCLUDING))
                     })
                     .collect(),
             ),
-            Width::Four => Form::Four(prepare(packets, 4, mask)),
-            Width::Eight => Form::Eight(prepare(packets, 8, mask)),
-            Width::Sixteen => Form::Sixteen(prepare(packets, 16, mask)),
+            Width::Four => Form::Four(prepare(packets, 4)),
+            Width::Eight => Form::Eight(prepare(packets, 8)),
+            Width::Sixteen => Form::Sixteen(prepare(packets, 16)),
         })
     }
 
@@ -84,37 +71,12 @@ impl PreparedRays {
             Form::Sixteen(packets) => trace(packets, accel, coherent),
         }
     }
-
-    /// Finds the closest hits of all rays; returns the number of rays with hits.
-    pub fn hits(&self, accel: &Accel, coherent: bool) -> u64 {
-        if accel.is_empty() {
-            return 0;
-        }
-        match &self.0 {
-            Form::One(rays) => {
-                let mut arguments = intersect_arguments(coherent);
-                let mut found = 0;
-                for ray in rays {
-                    let mut rayhit = without_hit(*ray);
-                    // SAFETY: the scene is committed; ray and arguments are ours, outlive the call, and have
-                    // the library's layout.
-                    unsafe { sys::rtcIntersect1(accel.scene(), &mut rayhit, &mut arguments) };
-                    found += u64::from(rayhit.hit.geomID != sys::RTC_INVALID_GEOMETRY_ID);
-                }
-                found
-            }
-            Form::Four(packets) => find(packets, accel, coherent),
-            Form::Eight(packets) => find(packets, accel, coherent),
-            Form::Sixteen(packets) => find(packets, accel, coherent),
-        }
-    }
 }
 
 /// Cuts packets of sixteen into packets of `width`, each with the mask of its lanes.
 fn prepare<'a, P: EmbreePacket>(
     packets: impl Iterator<Item = (&'a Rays16, u16)>,
     width: usize,
-    mask: u32,
 ) -> Vec<(LaneMask, P)> {
     let mut prepared = Vec::new();
     for (rays, valid) in packets {
@@ -123,7 +85,7 @@ fn prepare<'a, P: EmbreePacket>(
             let mut lanes = LaneMask([0; 16]);
             lanes.0[..width].copy_from_slice(&all.0[first..first + width]);
             if lanes.any() {
-                prepared.push((lanes, P::of(rays, first, mask)));
+                prepared.push((lanes, P::of(rays, first, OCCLUDING)));
             }
         }
     }
@@ -139,17 +101,4 @@ fn trace<P: EmbreePacket>(packets: &[(LaneMask, P)], accel: &Accel, coherent: bo
         occluded += u64::from(found.count_ones());
     }
     occluded
-}
-
-fn find<P: EmbreePacket>(packets: &[(LaneMask, P)], accel: &Accel, coherent: bool) -> u64 {
-    let mut arguments = intersect_arguments(coherent);
-    let (mut hits, mut found) = (Hits16::default(), 0);
-    for (lanes, packet) in packets {
-        let to = HitLanes { hits: &mut hits, first: 0, numbers: None };
-        // SAFETY: the scene is committed, and the mask is 64-byte aligned and of sixteen words.
-        let bits = unsafe { packet.closest_hit(lanes.0.as_ptr(), accel.scene(), &mut arguments, to) };
-        found += u64::from(bits.count_ones());
-    }
-    std::hint::black_box(&hits);
-    found
 }

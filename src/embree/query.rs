@@ -8,6 +8,7 @@ use super::numbers::PlacedNumbers;
 use super::packet::LANE_IDS;
 use super::ray::{ALL_GEOMETRY, OCCLUDING};
 use super::{Accel, Hits16, Rays16, Width};
+use base::stats::meter::{self, Query};
 use embree4_sys as sys;
 use std::mem::MaybeUninit;
 
@@ -39,6 +40,11 @@ pub(super) fn intersect_arguments(coherent: bool) -> sys::RTCIntersectArguments 
         filter: None,
         intersect: None,
     }
+}
+
+/// Returns the number of lanes of a mask.
+fn traced(lanes: &[i32]) -> u32 {
+    lanes.iter().filter(|&&lane| lane != 0).count() as u32
 }
 
 /// A packet in Embree's own layout.
@@ -214,6 +220,7 @@ impl Accel {
             return 0;
         }
         let mut arguments = intersect_arguments(coherent);
+        let kind = if coherent { Query::CoherentHits } else { Query::Hits };
         let lanes = rays.lanes(valid);
         let mut found = 0;
         for first in (0..16).step_by(width) {
@@ -224,7 +231,8 @@ impl Accel {
                 // SAFETY: the scene is committed; mask, packet and arguments are ours, outlive the call and have the
                 // library's layout (the version is checked). The mask is 64-byte aligned as a whole, and so its parts
                 // of 4 and 8 words as the packets of that width.
-                let bits = unsafe { packet.closest_hit(part.as_ptr(), self.scene(), &mut arguments, to) };
+                let trace = || unsafe { packet.closest_hit(part.as_ptr(), self.scene(), &mut arguments, to) };
+                let bits = meter::query(kind, || traced(part), trace);
                 found |= bits << first;
             }
         }
@@ -295,7 +303,8 @@ impl Accel {
                 let packet = P::of(rays, first, OCCLUDING);
                 // SAFETY: the scene is committed; the mask is 64-byte aligned as a whole, and so its parts of
                 // 4 and 8 words as the packets of that width; the rest by contract.
-                let found = unsafe { packet.occluded(part.as_ptr(), self.scene(), arguments) };
+                let trace = || unsafe { packet.occluded(part.as_ptr(), self.scene(), arguments) };
+                let found = meter::query(Query::Shadows, || traced(part), trace);
                 occluded |= found << first;
             }
         }

@@ -377,8 +377,8 @@ fn no_result_replaces_a_file_that_is_read_or_another_result() {
     refused(&[&render[..], &["-o", "wood.exr"]].concat());
     refused(&[&render[..], &["-o", "./sky.exr", "--no-png"]].concat());
     refused(&["bench", "shadow", "own.toml", "--export-json", "own.toml"]);
-    refused(&["bench", "shadow", "own.toml", "--export-csv", "wood.png"]);
-    refused(&["bench", "shadow", "own.toml", "--export-csv", "a.csv", "--export-json", "./a.csv"]);
+    refused(&["bench", "shadow", "own.toml", "--export-json", "wood.png"]);
+    refused(&["bench", "shadow", "own.toml", "--export-markdown", "a.csv", "--export-json", "./a.csv"]);
     let job = "[[picture]]\nscene = 'own.toml'\noutput = 'wood.exr'\nspp = 1\n";
     std::fs::write(sandbox.path("job.toml"), job).unwrap();
     sandbox.run(&["batch", "job.toml"]).expect(5);

@@ -1,8 +1,8 @@
 //! Files of lightsplat's own scenes as part of the program: descriptions, and the meshes that they name.
 
 /// Names of the scenes, each that of its TOML file.
-pub const NAMES: [&str; 9] =
-    ["apartment", "cornell", "furnace", "glass", "hall", "kitchen", "knot", "nave", "terrace"];
+pub const NAMES: [&str; 10] =
+    ["apartment", "cornell", "furnace", "glass", "hall", "kitchen", "knot", "nave", "plaza", "terrace"];
 
 macro_rules! files {
     ($($path:literal)*) => {
@@ -26,6 +26,7 @@ files! {
     "kitchen.toml"
     "knot.toml"
     "nave.toml"
+    "plaza.toml"
     "terrace.toml"
 }
 

@@ -6,7 +6,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 use std::sync::LazyLock;
 
-const SCENES: [&str; 5] = ["apartment", "hall", "kitchen", "knot", "nave"];
+const SCENES: [&str; 6] = ["apartment", "hall", "kitchen", "knot", "nave", "plaza"];
 
 /// A scene file and the parts that its generator makes, once for all tests.
 struct Described {
@@ -70,6 +70,7 @@ fn scenes_are_as_large_and_as_glossy_as_promised() {
         ("kitchen", 72_000.0, 0.05, 0.28, 0.03),
         ("knot", 2936.0, 0.0, 0.43, 0.02),
         ("nave", 80_000.0, 0.05, 0.0, 0.0),
+        ("plaza", 40_000.0, 0.2, 0.3, 0.3),
     ];
     for (scene, (name, count, tolerance, share, share_tolerance)) in DESCRIBED.iter().zip(promised) {
         assert_eq!(scene.name, name);

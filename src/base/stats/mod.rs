@@ -10,6 +10,7 @@
 mod contributions;
 mod counter;
 mod memory;
+pub mod meter;
 mod report;
 mod stage;
 mod sum;
@@ -63,7 +64,7 @@ impl Stats {
     /// Runs `work` and adds its time to `stage`.
     pub fn time<R>(&mut self, stage: Stage, work: impl FnOnce() -> R) -> R {
         let watch = Stopwatch::start();
-        let result = work();
+        let result = meter::stage(self, stage, work);
         self.add_time(stage, watch.elapsed());
         result
     }

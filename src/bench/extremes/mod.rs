@@ -13,11 +13,9 @@
 mod curves;
 
 use super::document::Grid;
-use super::plot::{Colour, Series, scatter};
-use super::study::{
-    Answer, Axis, Candidate, Question, Results, Shot, Study, StudyError, Subject, Truth, figure,
-};
-use super::{Benchmark, Kind, Scenes};
+use super::plot::{COLOURS, Line, Panel, Series};
+use super::study::{Answer, Axis, Candidate, Question, Shot, Study, StudyError, Subject, Truth, figure};
+use super::{Benchmark, Kind, Results, Scenes};
 use curves::Curve;
 use render::method::Method;
 use serde_json::{Value, json};
@@ -74,7 +72,7 @@ fn run(study: &Study, _: &[PathBuf]) -> Result<Results, StudyError> {
     for curve in curves.iter().filter(|curve| names.contains(&curve.name)) {
         answers.push((curve, answer(study, curve, &methods)?));
     }
-    let mut results = Results::new(study, "Extremes", LEGEND);
+    let mut results = Results::new("Extremes", study.facts(), LEGEND);
     let labels: Vec<&str> = methods.iter().map(|method| &*method.label).collect();
     results.json["methods"] = json!(labels);
     summary(&mut results, &answers, &labels);
@@ -167,13 +165,12 @@ fn section(results: &mut Results, curve: &Curve, answer: &Answer, methods: &[&st
     document.text(&format!("{}.", curve.about));
     let series = |(i, method): (usize, &&str)| Series {
         name: (*method).to_owned(),
-        colour: Colour::ALL[i % Colour::ALL.len()],
-        joined: true,
+        colour: COLOURS[i % COLOURS.len()].0,
+        line: Line::All,
         points: answer.points(of_method(answer, i, methods.len()), |s| Some(s.errors.rel_rmse())),
     };
-    let series: Vec<Series> = methods.iter().enumerate().map(series).collect();
-    let caption = format!("Relative error over {}. Both axes are logarithmic.", curve.name);
-    document.plot(curve.name, &caption, &scatter(answer.axis(), "relative error", &series));
+    let series = methods.iter().enumerate().map(series).collect();
+    answer.draw(document, curve.name, vec![Panel { title: "relative error".to_owned(), series }]);
     let row = |shots: &[Shot]| {
         let cells =
             shots.iter().map(|s| format!("{} / {:.3}", figure(s.errors.rel_rmse()), s.errors.brightness));

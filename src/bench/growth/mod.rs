@@ -5,15 +5,13 @@
 //!
 //! Units: errors are relative root mean squares, without the worst pixel of a thousand and the reference's noise.
 
-mod forest;
-mod scenes;
 mod threads;
 
-use super::plot::{Colour, Series, scatter};
+use super::plot::{Colour, Line, Panel, Series};
 use super::study::{
-    Answer, Axis, Candidate, Cell, Column, Question, Results, Shot, Study, StudyError, Subject, Truth, figure,
+    Answer, Axis, Candidate, Cell, Column, Question, Shot, Study, StudyError, Subject, Truth, figure,
 };
-use super::{Benchmark, Kind, Scenes};
+use super::{Benchmark, Kind, Results, Scenes};
 use base::stats::{Stage, Stopwatch};
 use render::method::Method;
 use serde_json::json;
@@ -30,7 +28,7 @@ pub(super) const BENCHMARK: Benchmark = Benchmark {
 const SIDES: [f64; 5] = [0.25, 0.5, 1.0, 2.0, 4.0];
 
 /// Numbers of lamps.
-const LAMPS: [u32; 4] = [1, 10, 100, 1000];
+const LAMPS: [u32; 4] = [10, 100, 1000, 10_000];
 
 /// Numbers of triangles.
 const TRIANGLES: [u32; 3] = [100_000, 1_000_000, 10_000_000];
@@ -62,6 +60,9 @@ const QUESTION: Question = Question {
     ..Question::PLAIN
 };
 
+/// Function that writes the meshes of a scene of some size into a folder, and returns its description.
+type WriteSized = fn(u32, &Path) -> std::io::Result<String>;
+
 /// A curve of a plot: name, colour and value of an image.
 type Curve = (&'static str, Colour, fn(&Shot) -> Option<f64>);
 
@@ -92,7 +93,7 @@ fn run(study: &Study, files: &[PathBuf]) -> Result<Results, StudyError> {
     let of = |knob| Question { axis: Axis::Value(knob), ..QUESTION };
     let default = [Candidate::new("default", Method::default())];
     let noisy = default.clone().map(|candidate| Candidate { denoise: false, ..candidate });
-    let mut results = Results::new(study, "Growth", LEGEND);
+    let mut results = Results::new("Growth", study.facts(), LEGEND);
     for file in files.iter().filter(|_| knobs.contains(&"pixels")) {
         let scenes = SIDES.iter().map(|&side| enlarged(study, file, side));
         let answer = study.ask(Question { images: &default, ..of("pixels") }, scenes)?;
@@ -100,16 +101,17 @@ fn run(study: &Study, files: &[PathBuf]) -> Result<Results, StudyError> {
     }
     if knobs.contains(&"lamps") {
         let question = Question { images: &noisy, error: Truth::Pixels, ..of("lamps") };
-        let answer = study.ask(question, LAMPS.iter().map(|&count| hall(study, count)))?;
-        section(&mut results, "Lamps in a hall", &answer);
+        let answer = study.ask(question, LAMPS.iter().map(|&count| plaza(study, count)))?;
+        section(&mut results, "Lamps of a plaza", &answer);
     }
     if knobs.contains(&"triangles") {
-        let scenes = TRIANGLES.iter().map(|&count| dunes(study, count));
+        let scenes =
+            TRIANGLES.iter().map(|&count| sized(study, count, "triangles", lightsplat_scenes::dunes));
         let answer = study.ask(Question { images: &default, ..of("triangles") }, scenes)?;
         section(&mut results, "Triangles of dunes", &answer);
     }
     if knobs.contains(&"instances") {
-        let scenes = TREES.iter().map(|&count| woods(study, count));
+        let scenes = TREES.iter().map(|&count| sized(study, count, "trees", lightsplat_scenes::forest));
         let answer = study.ask(Question { images: &default, ..of("triangles seen") }, scenes)?;
         section(&mut results, "Trees of a forest", &answer);
     }
@@ -127,31 +129,20 @@ fn enlarged(study: &Study, file: &Path, side: f64) -> Result<Subject, StudyError
     Ok(Subject { value: view.window.pixel_count() as f64, view, ..subject })
 }
 
-/// Writes the hall with a number of lamps, and loads it.
-fn hall(study: &Study, count: u32) -> Result<Subject, StudyError> {
-    let subject = study.own_subject(&format!("{count} lamps"), &scenes::hall(count))?;
+/// Loads the plaza with a number of lamps.
+fn plaza(study: &Study, count: u32) -> Result<Subject, StudyError> {
+    let text = lightsplat_scenes::file("plaza.toml").unwrap_or_default();
+    let generator = format!("generator = \"plaza {count}\"");
+    let text = String::from_utf8_lossy(text).replace("generator = \"plaza\"", &generator);
+    let subject = study.own_subject(&format!("{count} lamps"), &text)?;
     Ok(Subject { value: count.into(), ..subject })
 }
 
-/// Writes the dunes of a number of triangles, and loads them in a measured time.
-fn dunes(study: &Study, count: u32) -> Result<Subject, StudyError> {
-    let mesh = study.plan.folder.join(scenes::mesh_name(count));
-    if !mesh.exists() {
-        scenes::write_dunes(count, &mesh)
-            .map_err(|source| StudyError::File { path: mesh.clone(), source })?;
-    }
+/// Writes a scene of some size, and loads it in a measured time.
+fn sized(study: &Study, size: u32, unit: &str, write: WriteSized) -> Result<Subject, StudyError> {
+    let text = study.write_scene(|folder| write(size, folder))?;
     let watch = Stopwatch::start();
-    let subject = study.own_subject(&format!("{count} triangles"), &scenes::dunes(count))?;
-    let load = Some(watch.elapsed().cpu_seconds);
-    Ok(Subject { value: subject.triangles as f64, load, ..subject })
-}
-
-/// Writes a forest of a number of trees, and loads it in a measured time.
-fn woods(study: &Study, count: u32) -> Result<Subject, StudyError> {
-    let folder = &study.plan.folder;
-    forest::write(count, folder).map_err(|source| StudyError::File { path: folder.clone(), source })?;
-    let watch = Stopwatch::start();
-    let subject = study.own_subject(&format!("{count} trees"), &forest::forest(count))?;
+    let subject = study.own_subject(&format!("{size} {unit}"), &text)?;
     let load = Some(watch.elapsed().cpu_seconds);
     Ok(Subject { value: subject.triangles as f64, load, ..subject })
 }
@@ -160,10 +151,9 @@ fn section(results: &mut Results, name: &str, answer: &Answer) {
     let facts = json!({ "name": name, "knob": answer.axis() });
     results.push("series", facts, json!({ "points": answer.rows() }));
     results.document.heading(2, name);
-    plot(results, answer, [name, "processor seconds"], &TIMES);
-    if answer.reference.is_some() {
-        plot(results, answer, [name, "relative error"], &ERRORS);
-    }
+    let mut panels = vec![panel(answer, "processor seconds", &TIMES)];
+    panels.extend(answer.reference.is_some().then(|| panel(answer, "relative error", &ERRORS)));
+    answer.draw(&mut results.document, name, panels);
     let mut grid = answer.grid(&answer.shots);
     grid.heads[0] = answer.axis().to_owned();
     if let [first, .., last] = &answer.shots[..] {
@@ -182,15 +172,13 @@ fn section(results: &mut Results, name: &str, answer: &Answer) {
     results.document.grid(&grid);
 }
 
-/// Adds curves with the names of the section and of the vertical axis.
-fn plot(results: &mut Results, answer: &Answer, [section, name]: [&str; 2], curves: &[Curve]) {
-    let series = |(name, colour, at): &Curve| Series {
-        name: (*name).to_owned(),
-        colour: *colour,
-        joined: true,
+/// Returns a panel of curves.
+fn panel(answer: &Answer, title: &str, curves: &[Curve]) -> Panel {
+    let series = |&(name, colour, at): &Curve| Series {
+        name: name.to_owned(),
+        colour,
+        line: Line::All,
         points: answer.points(&answer.shots, at),
     };
-    let series: Vec<Series> = curves.iter().map(series).collect();
-    let about = format!("{section}: {name} over {}. Both axes are logarithmic.", answer.axis());
-    results.document.plot(&format!("{section}-{name}"), &about, &scatter(answer.axis(), name, &series));
+    Panel { title: title.to_owned(), series: curves.iter().map(series).collect() }
 }

@@ -3,9 +3,10 @@
 //! A stage is busy for the share cpu / (threads · wall). A serial share `s` of the work limits the speed-up `S` of `n`
 //! threads to 1 / (s + (1 - s) / n) (Amdahl's law), so s = (1 / S - 1 / n) / (1 - 1 / n).
 
+use crate::Results;
 use crate::document::Grid;
-use crate::plot::{Colour, Point, Series, scatter};
-use crate::study::{Candidate, Results, Study, StudyError, figure, seconds};
+use crate::plot::{Chart, Colour, Line, Panel, Point, Series};
+use crate::study::{Candidate, Study, StudyError, figure, seconds};
 use base::stats::{StageTime, Stats};
 use rayon::ThreadPoolBuilder;
 use render::method::Method;
@@ -44,7 +45,9 @@ pub(super) fn measure(study: &Study, file: &Path, results: &mut Results) -> Resu
     for threads in numbers(study.plan.threads) {
         (study.say)(&format!("{}, threads: {threads}", subject.name));
         let pool = ThreadPoolBuilder::new().num_threads(threads).build();
-        let pool = pool.map_err(|source| StudyError::Threads { threads, source })?;
+        let pool = pool.map_err(|error| {
+            StudyError::Render(format!("cannot start {threads} threads; try fewer with --threads: {error}"))
+        })?;
         let mut fastest: Option<Run> = None;
         for _ in 0..study.plan.repeats.max(1) {
             let stats = pool.install(|| study.render_once(&subject, &candidate))?.stats;
@@ -68,11 +71,13 @@ fn add(results: &mut Results, scene: &str, runs: &[Run]) {
     let point = |run: &Run, y: f64| Point { x: run.threads as f64, y, name: String::new() };
     let (measured, ideal) =
         runs.iter().map(|run| (point(run, speed_up(run)), point(run, run.threads as f64))).unzip();
-    let series = |name: &str, colour, points| Series { name: name.to_owned(), colour, joined: true, points };
-    let curves =
-        [series("measured", Colour::Red, measured), series("as many as threads", Colour::Plain, ideal)];
-    let about = format!("Speed-up of {scene} over the number of threads. Both axes are logarithmic.");
-    results.document.plot(&format!("threads-{scene}"), &about, &scatter("threads", "speed-up", &curves));
+    let series =
+        |name: &str, colour, points| Series { name: name.to_owned(), colour, line: Line::All, points };
+    let series =
+        vec![series("measured", Colour::Red, measured), series("as many as threads", Colour::Plain, ideal)];
+    let panels = vec![Panel { title: format!("{scene}: speed-up"), series }];
+    let chart = Chart { axis: "threads", panels, caption: Vec::new() };
+    results.document.plot(&format!("threads-{scene}"), &chart);
     let heads = ["threads", "wall", "processor", "speed-up", "busy %", "serial %"];
     let mut grid = Grid { heads: heads.map(str::to_owned).to_vec(), ..Grid::default() };
     for run in runs {

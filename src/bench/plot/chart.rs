@@ -1,8 +1,8 @@
 //! A chart of several panels with one legend and a caption.
 
-use super::panel::{Area, key, panel, text};
-use super::series::{Point, Series};
-use crate::escape::escaped;
+use super::panel::{Area, escaped, key, panel, text};
+use super::series::Series;
+use super::style::standalone;
 
 /// Width of a chart, and height of a row of panels.
 const WIDTH: f64 = 780.0;
@@ -33,21 +33,21 @@ pub struct Chart {
 }
 
 impl Chart {
-    /// Returns the chart as an element of a page. Lines join the points that no other point of the series beats.
-    /// Panels without a point are empty.
-    pub fn svg(&self) -> String {
+    /// Returns the chart as the text of a file; `None` if no panel has a point. Panels without a point are empty.
+    pub fn svg(&self) -> Option<String> {
         let legend = self.legend();
-        let keys = legend.len().div_ceil(3) as f64;
-        let caption: Vec<String> = self.caption.iter().flat_map(|text| lines(text, CHARACTERS)).collect();
-        let top = 14.0 + LINE * keys;
+        self.panels.iter().flat_map(|panel| &panel.series).flat_map(Series::drawable).next()?;
+        let width = WIDTH * self.panels.len().min(2) as f64 / 2.0;
+        let characters = (CHARACTERS as f64 * width / WIDTH) as usize;
+        let per_line = (width / KEY).max(1.0) as usize;
+        let caption: Vec<String> = self.caption.iter().flat_map(|text| lines(text, characters)).collect();
+        let top = 14.0 + LINE * legend.len().div_ceil(per_line) as f64;
         let rows = self.panels.len().div_ceil(2) as f64;
         let height = top + ROW * rows + LINE * caption.len() as f64 + 12.0;
-        let mut svg = format!(
-            "<svg class=\"plot\" viewBox=\"0 0 {WIDTH} {height:.0}\" width=\"{WIDTH}\" role=\"img\">\n"
-        );
-        svg += &format!("<title>{}</title>\n", escaped(&self.description()));
+        let mut svg = format!("<title>{}</title>\n", escaped(&self.description()));
         for (i, series) in legend.iter().enumerate() {
-            svg += &key(60.0 + KEY * (i % 3) as f64, 14.0 + LINE * (i / 3) as f64, series);
+            let [column, line] = [i % per_line, i / per_line].map(|n| n as f64);
+            svg += &key(60.0 + KEY * column, 14.0 + LINE * line, series);
         }
         for (i, panel) in self.panels.iter().enumerate() {
             svg += &self.draw(panel, [(i % 2) as f64 * 0.5 * WIDTH, top + ROW * (i / 2) as f64]);
@@ -56,14 +56,14 @@ impl Chart {
             let y = top + ROW * rows + LINE * (i as f64 + 0.5);
             svg += &text(14.0, y, "start", line).replacen("<text", "<text class=\"minor\"", 1);
         }
-        svg + "</svg>\n"
+        Some(standalone(width, height, &svg))
     }
 
     /// Describes the chart for readers who do not see it.
     pub fn description(&self) -> String {
         let titles: Vec<&str> = self.panels.iter().map(|panel| &*panel.title).collect();
         let names: Vec<String> = self.legend().into_iter().map(|series| series.name).collect();
-        format!("Error over {} of {}: {}", self.axis, names.join(", "), titles.join("; "))
+        format!("{} over {}: {}", titles.join("; "), self.axis, names.join(", "))
     }
 
     /// Returns one series per name, in the order of appearance.
@@ -82,26 +82,9 @@ impl Chart {
     fn draw(&self, panel_of: &Panel, [x, y]: [f64; 2]) -> String {
         let area =
             Area { left: x + 62.0, right: x + 0.5 * WIDTH - 12.0, top: y + 24.0, bottom: y + ROW - 46.0 };
-        let mut series = Vec::new();
-        for points in &panel_of.series {
-            // Points without a common name are labelled instead of joined.
-            if points.name.is_empty() {
-                series.push(points.clone());
-                continue;
-            }
-            let front = points.front();
-            let on_front = |point: &Point| front.iter().any(|p| p.x == point.x && p.y == point.y);
-            let beaten = points.drawable().filter(|p| !on_front(p)).cloned().collect();
-            series.push(Series { joined: false, points: beaten, ..points.clone() });
-            series.push(Series {
-                joined: true,
-                points: front.into_iter().cloned().collect(),
-                ..points.clone()
-            });
-        }
         let mut svg =
             text(area.left, y + 14.0, "start", &panel_of.title).replacen("<text", "<text class=\"head\"", 1);
-        svg += &panel(area, &series).unwrap_or_default();
+        svg += &panel(area, &panel_of.series).unwrap_or_default();
         svg + &text(0.5 * (area.left + area.right), area.bottom + 33.0, "middle", self.axis)
     }
 }
@@ -123,12 +106,12 @@ fn lines(text: &str, most: usize) -> Vec<String> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::series::Colour;
+    use super::super::series::{Colour, Line, Point};
     use super::*;
 
     fn series(name: &str, colour: Colour, points: &[[f64; 2]]) -> Series {
         let points = points.iter().map(|&[x, y]| Point { x, y, name: String::new() }).collect();
-        Series { name: name.to_owned(), colour, joined: false, points }
+        Series { name: name.to_owned(), colour, line: Line::Front, points }
     }
 
     #[test]
@@ -145,12 +128,12 @@ mod tests {
             ],
             caption: vec!["word ".repeat(40)],
         };
-        let svg = chart.svg();
+        let svg = chart.svg().unwrap();
         assert_eq!(svg.matches(">ours &amp; co<").count(), 1, "{svg}");
         // Two points of each front are joined; the beaten one and the single one are not.
         assert_eq!((svg.matches("class=\"line").count(), svg.matches("<circle").count()), (2, 2 + 4 + 3));
         assert_eq!(svg.matches("class=\"minor\"").count(), 2);
-        assert!(chart.description().contains("ours & co, theirs: a: FLIP; b: FLIP; c"));
+        assert!(chart.description().contains("b: FLIP; c over seconds: ours & co, theirs"));
         assert_eq!(lines("aa bb cccccc d", 5), ["aa bb", "cccccc", "d"]);
     }
 }

@@ -1,17 +1,12 @@
-//! Plots in SVG: ratios as bars, points over two logarithmic axes, and a chart of several such panels.
+//! Plots in SVG: a chart of panels, each with points over two logarithmic axes.
 //!
-//! Colours are classes of a style sheet, which has a light and a dark palette. Pages hold plots as elements; files of
-//! their own are made by [`standalone`].
+//! Colours are classes of a style sheet, which has a light and a dark palette.
 
 mod axis;
-mod bars;
 mod chart;
 mod panel;
 mod series;
 mod style;
 
-pub use bars::bars;
 pub use chart::{Chart, Panel};
-pub use panel::scatter;
-pub use series::{Colour, Point, Series};
-pub use style::{page_style, standalone};
+pub use series::{COLOURS, Colour, Line, Point, Series};

@@ -1,14 +1,7 @@
 //! Points over two logarithmic axes.
 
 use super::axis::Axis;
-use super::series::{Point, Series};
-use crate::escape::escaped;
-
-/// Width and height of a scatter plot.
-const WIDTH: f64 = 720.0;
-const HEIGHT: f64 = 420.0;
-/// Width of its legend.
-const LEGEND: f64 = 150.0;
+use super::series::{Line, Series};
 
 /// Area of a panel between its axes.
 #[derive(Clone, Copy)]
@@ -24,26 +17,9 @@ pub fn text(x: f64, y: f64, anchor: &str, text: &str) -> String {
     format!("<text x=\"{x:.1}\" y=\"{y:.1}\" text-anchor=\"{anchor}\">{}</text>\n", escaped(text))
 }
 
-/// Returns a scatter plot with a legend. Points whose coordinates are not positive are left out.
-pub fn scatter(x_name: &str, y_name: &str, series: &[Series]) -> String {
-    let area = Area { left: 70.0, right: WIDTH - LEGEND, top: 14.0, bottom: HEIGHT - 48.0 };
-    let Some(drawn) = panel(area, series) else {
-        return "<p>There is nothing to plot.</p>\n".to_owned();
-    };
-    let mut svg = format!(
-        "<svg class=\"plot\" viewBox=\"0 0 {WIDTH} {HEIGHT}\" width=\"{WIDTH}\" role=\"img\">\n{drawn}"
-    );
-    svg += &text(0.5 * (area.left + area.right), HEIGHT - 10.0, "middle", x_name);
-    svg += &format!(
-        "<text transform=\"translate(14 {}) rotate(-90)\" text-anchor=\"middle\">{}</text>\n",
-        0.5 * (area.top + area.bottom),
-        escaped(y_name)
-    );
-    let shown = series.iter().filter(|s| !s.name.is_empty() && s.drawable().next().is_some());
-    for (i, series) in shown.enumerate() {
-        svg += &key(area.right + 12.0, area.top + 10.0 + 18.0 * i as f64, series);
-    }
-    svg + "</svg>\n"
+/// Escapes text for SVG.
+pub fn escaped(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }
 
 /// Returns the mark and the name of a series for a legend.
@@ -78,18 +54,18 @@ pub fn panel(area: Area, series: &[Series]) -> Option<String> {
 fn marks(series: &Series, x: &Axis, y: &Axis) -> String {
     let class = series.colour.class();
     let mut svg = String::new();
-    let points: Vec<&Point> = series.drawable().collect();
-    if series.joined && points.len() > 1 {
-        let path: Vec<String> = points.iter().map(|p| format!("{:.1} {:.1}", x.at(p.x), y.at(p.y))).collect();
+    let joined = series.joined();
+    if joined.len() > 1 {
+        let path: Vec<String> = joined.iter().map(|p| format!("{:.1} {:.1}", x.at(p.x), y.at(p.y))).collect();
         svg += &format!("<path class=\"line {class}\" d=\"M{}\"/>\n", path.join("L"));
     }
-    for point in points {
+    for point in series.drawable() {
         let (px, py, name) = (x.at(point.x), y.at(point.y), &point.name);
         svg += &format!(
             "<circle class=\"{class}\" cx=\"{px:.1}\" cy=\"{py:.1}\" r=\"4\"><title>{}</title></circle>\n",
             escaped(name)
         );
-        if !series.joined && !name.is_empty() && series.name.is_empty() {
+        if series.line == Line::None && !name.is_empty() && series.name.is_empty() {
             svg += &text(px + 7.0, py + 4.0, "start", name);
         }
     }
@@ -98,17 +74,18 @@ fn marks(series: &Series, x: &Axis, y: &Axis) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::super::series::Colour;
+    use super::super::series::{Colour, Point};
     use super::*;
 
     #[test]
     fn points_that_cannot_be_drawn_are_left_out() {
         let point = |x, y, name: &str| Point { x, y, name: name.to_owned() };
         let points = vec![point(1.0, 2.0, "<a>"), point(0.0, 1.0, "b"), point(1.0, f64::NAN, "c")];
-        let series = Series { name: String::new(), colour: Colour::Red, joined: false, points };
-        let svg = scatter("x", "y", &[series]);
+        let series = Series { name: String::new(), colour: Colour::Red, line: Line::None, points };
+        let area = Area { left: 0.0, right: 100.0, top: 0.0, bottom: 100.0 };
+        let svg = panel(area, &[series]).unwrap();
         assert_eq!(svg.matches("<circle").count(), 1);
         assert!(svg.contains("&lt;a&gt;") && !svg.contains("NaN") && !svg.contains("inf"), "{svg}");
-        assert!(!scatter("x", "y", &[]).contains("<svg"));
+        assert!(panel(area, &[]).is_none());
     }
 }

@@ -14,49 +14,35 @@ pub enum Colour {
     Plain,
 }
 
-impl Colour {
-    /// All colours, the ones that differ most first.
-    pub const ALL: [Colour; 9] = [
-        Colour::Red,
-        Colour::Blue,
-        Colour::Green,
-        Colour::Orange,
-        Colour::Purple,
-        Colour::Olive,
-        Colour::Steel,
-        Colour::Grey,
-        Colour::Plain,
-    ];
+/// All colours, the ones that differ most first: class in style sheets, and CSS colour on light and on dark ground.
+pub const COLOURS: [(Colour, &str, [&str; 2]); 9] = [
+    (Colour::Red, "red", ["#c8102e", "#ff6b6b"]),
+    (Colour::Blue, "blue", ["#0969c3", "#58a6ff"]),
+    (Colour::Green, "green", ["#0a7f5a", "#3fc38e"]),
+    (Colour::Orange, "orange", ["#b35900", "#f0983e"]),
+    (Colour::Purple, "purple", ["#8639a0", "#cf8ee8"]),
+    (Colour::Olive, "olive", ["#5d7a1f", "#a9c95c"]),
+    (Colour::Steel, "steel", ["#4a7fb5", "#79a9d6"]),
+    (Colour::Grey, "grey", ["#a8a8a8", "#6e6e6e"]),
+    (Colour::Plain, "plain", ["#222222", "#e6e6e6"]),
+];
 
+impl Colour {
     /// Returns the class in style sheets.
     pub fn class(self) -> &'static str {
-        match self {
-            Colour::Red => "red",
-            Colour::Blue => "blue",
-            Colour::Green => "green",
-            Colour::Orange => "orange",
-            Colour::Purple => "purple",
-            Colour::Olive => "olive",
-            Colour::Steel => "steel",
-            Colour::Grey => "grey",
-            Colour::Plain => "plain",
-        }
+        COLOURS[self as usize].1
     }
+}
 
-    /// Returns the CSS colours on light and on dark ground.
-    pub fn shades(self) -> [&'static str; 2] {
-        match self {
-            Colour::Red => ["#c8102e", "#ff6b6b"],
-            Colour::Blue => ["#0969c3", "#58a6ff"],
-            Colour::Green => ["#0a7f5a", "#3fc38e"],
-            Colour::Orange => ["#b35900", "#f0983e"],
-            Colour::Purple => ["#8639a0", "#cf8ee8"],
-            Colour::Olive => ["#5d7a1f", "#a9c95c"],
-            Colour::Steel => ["#4a7fb5", "#79a9d6"],
-            Colour::Grey => ["#a8a8a8", "#6e6e6e"],
-            Colour::Plain => ["#222222", "#e6e6e6"],
-        }
-    }
+/// Points that a line joins.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Line {
+    /// No points.
+    None,
+    /// All points, in their order.
+    All,
+    /// The points that no other point of the series beats.
+    Front,
 }
 
 /// Points of one colour.
@@ -64,11 +50,8 @@ impl Colour {
 pub struct Series {
     /// Name in the legend; empty to name each point instead.
     pub name: String,
-    /// Colour.
     pub colour: Colour,
-    /// True if a line joins the points in their order.
-    pub joined: bool,
-    /// Points.
+    pub line: Line,
     pub points: Vec<Point>,
 }
 
@@ -95,8 +78,17 @@ impl Series {
         self.points.iter().filter(|point| point.is_drawable())
     }
 
-    /// Returns the points that no other point beats in both coordinates, by their first coordinate.
-    pub fn front(&self) -> Vec<&Point> {
+    /// Returns the points that the line joins. The front is sorted by its first coordinate.
+    pub fn joined(&self) -> Vec<&Point> {
+        match self.line {
+            Line::None => Vec::new(),
+            Line::All => self.drawable().collect(),
+            Line::Front => self.front(),
+        }
+    }
+
+    /// Returns the points that no other point beats in both coordinates.
+    fn front(&self) -> Vec<&Point> {
         let mut points: Vec<&Point> = self.drawable().collect();
         points.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
         let mut front: Vec<&Point> = Vec::new();
@@ -118,7 +110,7 @@ mod tests {
         let point = |x, y| Point { x, y, name: String::new() };
         let points =
             vec![point(3.0, 2.0), point(1.0, 4.0), point(2.0, 5.0), point(0.0, 9.0), point(4.0, 2.0)];
-        let series = Series { name: String::new(), colour: Colour::Red, joined: true, points };
+        let series = Series { name: String::new(), colour: Colour::Red, line: Line::Front, points };
         let front: Vec<[f64; 2]> = series.front().iter().map(|p| [p.x, p.y]).collect();
         assert_eq!(front, [[1.0, 4.0], [3.0, 2.0]]);
     }

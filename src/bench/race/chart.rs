@@ -1,6 +1,6 @@
 //! The chart of a race: error over time of each scene, with figures of other programs.
 
-use crate::plot::{Chart, Colour, Panel, Point, Series};
+use crate::plot::{Chart, Colour, Line, Panel, Point, Series};
 use crate::study::{Answer, PeerFigure};
 
 /// Colours of other programs. The curves of the race have the others.
@@ -40,7 +40,7 @@ pub fn chart(answers: &[Answer], peers: &[PeerFigure], conditions: String) -> Ch
             panel.series.extend(names.iter().enumerate().map(|(i, name)| Series {
                 name: (*name).to_owned(),
                 colour: COLOURS[i % COLOURS.len()],
-                joined: true,
+                line: Line::Front,
                 points: points(of_scene.iter().filter(|peer| peer.name == *name), error),
             }));
             panels.push(panel);

@@ -8,13 +8,12 @@ mod chart;
 
 use self::chart::{FLIP, REL_MSE, chart};
 use super::document::Grid;
-use super::plot::Colour;
+use super::plot::{Colour, Line};
 use super::study::{
-    Answer, Bounded, Candidate, Cell, Column, Curve, Errors, Figure, PeerFigure, Question, Results, Study,
-    StudyError, bounded, denoised_paths, optional, qualities, rmse_of_psnr, seconds, time_to,
+    Answer, Bounded, Candidate, Cell, Column, Curve, Errors, Figure, PeerFigure, Question, Study, StudyError,
+    bounded, denoised_paths, optional, qualities, rmse_of_psnr, seconds, time_to,
 };
-use super::thumbnail::strip;
-use super::{Benchmark, Kind, Scenes};
+use super::{Benchmark, Kind, Results, Scenes};
 use render::method::Method;
 use serde::Serialize;
 use serde_json::json;
@@ -24,7 +23,7 @@ pub(super) const BENCHMARK: Benchmark = Benchmark {
     name: "race",
     about: "Error over time: cache, denoised paths and other programs",
     kind: Kind::Study {
-        scenes: Scenes::Files(&["cornell", "knot", "nave", "kitchen", "apartment", "hall"]),
+        scenes: Scenes::Files(&["cornell", "knot", "nave", "kitchen", "apartment", "hall", "plaza"]),
         pixels: [512, 512],
         run,
     },
@@ -44,9 +43,6 @@ const LEGEND: &str = "Seconds are processor seconds over all threads, without lo
     radiances. PSNR and relMSE are without the noise of the reference, relMSE also without the worst pixel of a thousand. \
     FLIP includes the noise of the reference.";
 
-/// Images that are shown side by side.
-const SHOWN: [&str; 4] = ["draft", "preview", "default", "path --denoise, 16 spp"];
-
 /// Images of a scene over processor seconds.
 const QUESTION: Question = Question {
     names: 2,
@@ -62,7 +58,6 @@ const QUESTION: Question = Question {
         Column::new("", "relMSE", |_, s| Cell::figure(s.errors.rel_mse)),
     ],
     brief: &["image", "seconds", "PSNR", "FLIP", "relMSE"],
-    keeps_images: true,
     figures: &[
         Figure { name: REL_MSE, error: |s| Some(s.errors.rel_mse), curves: CURVES },
         Figure { name: FLIP, error: |s| Some(s.errors.flip), curves: CURVES },
@@ -71,11 +66,11 @@ const QUESTION: Question = Question {
 };
 
 const CURVES: &[Curve] = &[
-    Curve { name: "lightsplat, cache", colour: Colour::Red, joined: false, holds: |c| !c.is_path() },
+    Curve { name: "lightsplat, cache", colour: Colour::Red, line: Line::Front, holds: |c| !c.is_path() },
     Curve {
         name: "lightsplat, paths + denoiser",
         colour: Colour::Green,
-        joined: true,
+        line: Line::Front,
         holds: |c| c.is_path(),
     },
 ];
@@ -108,10 +103,10 @@ fn run(study: &Study, scenes: &[PathBuf]) -> Result<Results, StudyError> {
     let ask = |path: &PathBuf| study.ask(question, [study.subject(path)]);
     let answers: Vec<Answer> = scenes.iter().map(ask).collect::<Result<_, _>>()?;
     let times: Vec<Vec<Times>> = answers.iter().map(times).collect();
-    let mut results = Results::new(study, "Time and error", LEGEND);
+    let mut results = Results::new("Time and error", study.facts(), LEGEND);
     let (peers, conditions) = (&study.plan.peers, conditions(&results));
     let chart = chart(&answers, peers, conditions);
-    results.document.plot("race", &chart.description(), &chart.svg());
+    results.document.plot("race", &chart);
     results.document.text(TABLE);
     let heads = TARGETS.map(Target::name);
     let heads: Vec<&str> = [""].into_iter().chain(heads.iter().map(String::as_str)).collect();
@@ -171,7 +166,6 @@ fn images(study: &Study) -> Vec<Candidate> {
 fn section(results: &mut Results, answer: &Answer, times: &[Times]) {
     results.push("scenes", answer.facts(), json!({ "points": answer.rows(), "times": times }));
     results.document.heading(2, &answer.scene);
-    results.document.strip(strip(answer, &SHOWN));
     answer.tell(&mut results.document);
 }
 

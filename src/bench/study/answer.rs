@@ -4,7 +4,7 @@ use super::cell::figure;
 use super::reference::Noise;
 use super::{Answer, Axis, Column, Curve, Figure, Question, Shot};
 use crate::document::{Document, Grid};
-use crate::plot::{Panel, Point, Series, scatter};
+use crate::plot::{Chart, Panel, Point, Series};
 use serde_json::{Value, json};
 
 impl Answer {
@@ -40,7 +40,6 @@ impl Answer {
     }
 
     /// Adds a table of the main images with the brief columns, then the table of all images and columns, folded away.
-    /// Mere points of curves are grey.
     pub fn tell(&self, document: &mut Document) {
         let main = self.shots.iter().filter(|shot| shot.candidate.main);
         let Question { table, brief, names, .. } = self.question;
@@ -48,22 +47,16 @@ impl Answer {
         let texts = table.iter().filter(|column| !column.head.is_empty()).take(names).filter(is_brief);
         let columns: Vec<&Column<Shot>> = table.iter().filter(is_brief).collect();
         document.grid(&self.grid_in(&columns, texts.count(), main));
-        let mut grid = self.grid(&self.shots);
-        grid.minor = (0..self.shots.len()).filter(|&i| !self.shots[i].candidate.main).collect();
+        let grid = self.grid(&self.shots);
         document.fold("All images and all columns", |document| {
             document.text(&self.about());
             document.grid(&grid);
         });
     }
 
-    /// Adds the figures.
-    pub fn draw(&self, document: &mut Document) {
-        for figure in self.question.figures {
-            let about =
-                format!("{} over {} of {}. Lower left is better.", figure.name, self.axis(), self.scene);
-            let name = format!("{}-{}", self.scene, figure.name);
-            document.plot(&name, &about, &scatter(self.axis(), figure.name, &self.series(figure)));
-        }
+    /// Adds a chart with the name of its file.
+    pub fn draw(&self, document: &mut Document, name: &str, panels: Vec<Panel>) {
+        document.plot(name, &Chart { axis: self.axis(), panels, caption: Vec::new() });
     }
 
     /// Returns the figures as panels of a chart.
@@ -80,7 +73,7 @@ impl Answer {
         let series = |curve: &Curve| Series {
             name: curve.name.to_owned(),
             colour: curve.colour,
-            joined: curve.joined,
+            line: curve.line,
             points: self.points(self.shots.iter().filter(|s| (curve.holds)(&s.candidate)), figure.error),
         };
         figure.curves.iter().map(series).collect()

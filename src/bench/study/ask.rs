@@ -3,7 +3,6 @@
 use super::{
     Answer, Candidate, Errors, Question, Reference, Run, Shot, Study, StudyError, Subject, Truth, eye_samples,
 };
-use base::film::Image;
 use std::rc::Rc;
 use transport::paths::Estimand;
 
@@ -27,10 +26,10 @@ impl Study<'_> {
     ) -> Result<Answer, StudyError> {
         let mut answer = Answer::to(&question);
         for subject in scenes {
-            let mut subject = subject?;
-            let standards = self.standards(&mut subject, &question)?;
+            let subject = subject?;
+            let standards = self.standards(&subject, &question)?;
             for candidate in question.images {
-                answer.shots.push(self.shot(&mut subject, candidate, &question, &standards)?);
+                answer.shots.push(self.shot(&subject, candidate, &question, &standards)?);
             }
             (answer.scene, answer.triangles) = (subject.name, subject.triangles);
             (answer.reference, answer.light_reference) = (standards.pixels, standards.samples);
@@ -38,7 +37,7 @@ impl Study<'_> {
         Ok(answer)
     }
 
-    fn standards(&self, subject: &mut Subject, question: &Question) -> Result<Standards, StudyError> {
+    fn standards(&self, subject: &Subject, question: &Question) -> Result<Standards, StudyError> {
         let mut standards = Standards::default();
         match question.error {
             Truth::None => {}
@@ -57,7 +56,7 @@ impl Study<'_> {
 
     fn shot(
         &self,
-        subject: &mut Subject,
+        subject: &Subject,
         candidate: &Candidate,
         question: &Question,
         standards: &Standards,
@@ -85,9 +84,8 @@ impl Study<'_> {
         };
         let other = (question.compared_with)(candidate).and_then(|index| standards.others.get(index));
         let compared = other.map(|other| Errors::between(&color, &other.color)).transpose()?;
-        let image = if question.keeps_images { color } else { Image::new(0, 0) };
         let candidate = candidate.clone();
         let (value, load) = (subject.value, subject.load);
-        Ok(Shot { candidate, value, load, counted, image, errors, light, compared, nonfinite })
+        Ok(Shot { candidate, value, load, counted, errors, light, compared, nonfinite })
     }
 }

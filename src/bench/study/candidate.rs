@@ -1,7 +1,6 @@
 //! Images that a study renders: methods with settings.
 
 use super::Study;
-use embree::BuildQuality;
 use render::method::{Method, path, vpl};
 use render::plan::{DRAFT, FINAL, Ladder, PREVIEW, REFERENCE};
 use serde::Serialize;
@@ -21,8 +20,6 @@ pub struct Candidate {
     pub denoise: bool,
     /// Number of frames of a walk-through whose last frame is the image; `None` for a single image.
     pub walk: Option<usize>,
-    /// Acceleration structure to be built for the image, whose time counts; `None` for the scene's own.
-    pub build: Option<BuildQuality>,
     /// Number of seeds over which errors are averaged; 0 for the method's own seed.
     pub seeds: u32,
     /// Options for the settings that differ from the defaults.
@@ -43,8 +40,6 @@ pub enum Group {
     Quality,
     /// One setting varied.
     Sweep,
-    /// A point of a designed sample.
-    Sample,
     /// Other methods.
     Other,
     /// Denoised paths of several sample counts.
@@ -65,7 +60,6 @@ impl Candidate {
             denoise: method.leaves_noise(),
             method,
             walk: None,
-            build: None,
             seeds: 0,
             options: String::new(),
             group: Group::Default,

@@ -1,6 +1,7 @@
 //! Statistics of an image in the form in which they are stored. All counters that studies read are read here.
 
-use base::stats::{Counter, Stage, StageTime, Stats};
+use base::stats::{Counter, Stage, Stats};
+use render::cost::Work;
 use serde::{Deserialize, Serialize};
 
 /// Counters and times of stages.
@@ -21,6 +22,10 @@ pub struct Counted {
     pub cut: Option<f64>,
     /// Number of values that were not finite.
     pub nonfinite: u64,
+    /// Work of the image; none for a walk-through.
+    pub work: Work,
+    /// Closest-hit rays and shadow rays of the eye pass.
+    pub eye_rays: f64,
 }
 
 impl Counted {
@@ -45,6 +50,8 @@ impl Counted {
             accuracy: layers("accuracy"),
             cut: counter(cut),
             nonfinite,
+            work: Work::default(),
+            eye_rays: ["Eye/closest-hit rays", "Eye/shadow rays"].into_iter().filter_map(counter).sum(),
         }
     }
 
@@ -57,12 +64,6 @@ impl Counted {
     /// Returns the elapsed seconds of all stages.
     pub fn elapsed(&self) -> f64 {
         self.times.iter().flatten().map(|[_, wall]| wall).fold(0.0, |sum, time| sum + time)
-    }
-
-    /// Sets the time of a stage.
-    pub fn set(&mut self, stage: Stage, time: StageTime) {
-        let times = Stage::ALL.iter().zip(&mut self.times).filter(|(other, _)| **other == stage);
-        times.for_each(|(_, own)| *own = Some([time.cpu_seconds, time.wall_seconds]));
     }
 
     /// Returns true if the image was denoised.

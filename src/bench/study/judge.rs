@@ -33,7 +33,8 @@ impl Errors {
 
     /// Returns the errors against another image.
     pub fn between(test: &Image, other: &Image) -> Result<Errors, StudyError> {
-        let found = compare(test, other, Variances::default()).map_err(StudyError::Compare)?;
+        let found = compare(test, other, Variances::default());
+        let found = found.map_err(|error| StudyError::Input(error.to_string()))?;
         let brightness = mean(test) / mean(other).max(f64::MIN_POSITIVE);
         Ok(Errors { psnr: found.psnr, rel_mse: found.rel_mse_trimmed, flip: found.flip, brightness })
     }

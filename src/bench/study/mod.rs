@@ -22,16 +22,14 @@ mod plan;
 mod progress;
 mod question;
 mod reference;
-mod results;
 mod run;
 mod store;
 mod subject;
 
 pub use error::StudyError;
 pub use peers::PeerFigure;
-pub use plan::{Plan, ReferenceSettings, SAMPLES};
+pub use plan::{Plan, ReferenceSettings};
 pub use progress::Study;
-pub use results::Results;
 pub use subject::file_of;
 
 pub(super) use candidate::{

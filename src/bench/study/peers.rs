@@ -36,10 +36,13 @@ impl PeerFigure {
     /// # Errors
     /// If the file cannot be read, or a line has no figures.
     pub fn read(path: &Path) -> Result<Vec<PeerFigure>, StudyError> {
-        let wrong =
-            |line: usize, what: String| StudyError::Figures { path: path.to_owned(), line: line + 1, what };
+        let file = path.display();
+        let wrong = |line: usize, what: String| {
+            let form = "a line is a JSON object with name, scene, seconds, and rel_mse or flip, see docs/benchmarks.md";
+            StudyError::Input(format!("{file}:{}: {what}; {form}", line + 1))
+        };
         let text = fs::read_to_string(path)
-            .map_err(|source| StudyError::Unreadable { path: path.to_owned(), source })?;
+            .map_err(|error| StudyError::Input(format!("cannot read {file}: {error}")))?;
         let mut figures = Vec::new();
         for (i, line) in text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty()) {
             let figure: PeerFigure =

@@ -15,8 +15,6 @@ pub struct Plan {
     pub resolution: [u32; 2],
     /// Quality of the references.
     pub reference: ReferenceSettings,
-    /// Number of points of a designed sample, in studies that have one.
-    pub samples: u32,
     /// Names of the settings or quantities to vary, in studies that vary any; if empty, all.
     pub knobs: Vec<String>,
     /// Figures of other programs, for studies with a chart.
@@ -31,15 +29,13 @@ impl Plan {
     pub(crate) fn knobs<'k>(&self, known: &[&'k str]) -> Result<Vec<&'k str>, StudyError> {
         if let Some(name) = self.knobs.iter().find(|name| !known.contains(&name.as_str())) {
             let separator = if known.iter().any(|name| name.contains(',')) { "; " } else { ", " };
-            return Err(StudyError::Knob { name: name.clone(), known: known.join(separator) });
+            let known = known.join(separator);
+            return Err(StudyError::Usage(format!("there is no knob {name}; there are: {known}")));
         }
         let wanted = |name: &str| self.knobs.is_empty() || self.knobs.iter().any(|knob| knob == name);
         Ok(known.iter().copied().filter(|name| wanted(name)).collect())
     }
 }
-
-/// Default number of points of a designed sample.
-pub const SAMPLES: u32 = 32;
 
 /// Limits at which a reference is good enough.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -50,7 +50,7 @@ impl<'a> Study<'a> {
     }
 
     /// Returns the conditions that the figures depend on, each with its name.
-    pub(super) fn facts(&self) -> Facts {
+    pub(crate) fn facts(&self) -> Facts {
         let [width, height] = self.plan.resolution;
         let own = [
             ("pixels", format!("{width}x{height}")),

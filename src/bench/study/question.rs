@@ -1,8 +1,7 @@
 //! Questions about images, declared as data, and the judged images of their answers.
 
 use super::{Candidate, Cell, Counted, Errors, Reference};
-use crate::plot::Colour;
-use base::film::Image;
+use crate::plot::{Colour, Line};
 use base::stats::Stage;
 use std::rc::Rc;
 
@@ -21,8 +20,6 @@ pub struct Question<'q> {
     pub others: &'q [Candidate],
     /// Returns the index of the other image that an image is compared with.
     pub compared_with: fn(&Candidate) -> Option<usize>,
-    /// True if the images are kept in memory for the answer.
-    pub keeps_images: bool,
     /// Columns of the table, a row per image. The first `names` columns hold text.
     pub table: &'static [Column<Shot>],
     pub names: usize,
@@ -41,7 +38,6 @@ impl Question<'_> {
         brightness: |_| 1.0,
         others: &[],
         compared_with: |_| None,
-        keeps_images: false,
         table: &[],
         names: 1,
         brief: &[],
@@ -81,8 +77,6 @@ pub struct Shot {
     pub load: Option<f64>,
     /// Counters and times.
     pub counted: Counted,
-    /// The image, if the question keeps it.
-    pub image: Image,
     /// Errors against the reference of pixels, averaged over seeds.
     pub errors: Errors,
     /// Errors of light: against the reference of pixels for methods that estimate whole pixels, and of eye samples for
@@ -127,8 +121,8 @@ pub struct Curve {
     pub name: &'static str,
     /// Colour.
     pub colour: Colour,
-    /// True if a line joins the points.
-    pub joined: bool,
+    /// Points that a line joins.
+    pub line: Line,
     /// Returns true for the images of the curve.
     pub holds: fn(&Candidate) -> bool,
 }

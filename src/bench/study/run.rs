@@ -3,8 +3,7 @@
 use super::store::{Stored, program};
 use super::{Candidate, Counted, Study, StudyError, Subject};
 use base::film::Image;
-use base::stats::{Stage, Stats, Stopwatch};
-use embree::BuildQuality;
+use base::stats::{Stage, Stats};
 use render::method::{LightStore, Output};
 use render::session::{Finish, Goal};
 use render::walk::{RetentionLimits, Walk};
@@ -21,7 +20,7 @@ pub struct Run {
 
 impl Study<'_> {
     /// Renders an image, or loads it if this program has rendered it before. Of several runs the fastest counts.
-    pub fn run(&self, subject: &mut Subject, candidate: &Candidate) -> Result<Run, StudyError> {
+    pub fn run(&self, subject: &Subject, candidate: &Candidate) -> Result<Run, StudyError> {
         let method = &candidate.method;
         let name = format!("{}, {}", subject.name, method.name());
         // The label is not part of the key.
@@ -30,7 +29,6 @@ impl Study<'_> {
             "film": subject.view.window.film,
             "program": program(),
             "threads": self.plan.threads,
-            "build": candidate.build.map(|quality| format!("{quality:?}")),
             "repeats": self.plan.repeats,
             "method": method.name(),
             "denoise": candidate.denoise && self.denoises(),
@@ -46,7 +44,7 @@ impl Study<'_> {
         let views = candidate.walk.and_then(|frames| subject.walk(frames));
         let run = match views {
             Some(views) => self.walk(subject, candidate, &views)?,
-            None => self.render_over(subject, candidate)?,
+            None => self.render(subject, candidate, self.plan.repeats)?,
         };
         let unit = if candidate.walk.is_some() { ", per frame" } else { "" };
         let seconds = run.counted.seconds(&Stage::ALL);
@@ -61,21 +59,6 @@ impl Study<'_> {
         let mut candidate = candidate.clone();
         candidate.method.set_seed(seed);
         self.render(subject, &candidate, 1)
-    }
-
-    /// Renders over the candidate's acceleration structure. The time includes a build for the candidate.
-    fn render_over(&self, subject: &mut Subject, candidate: &Candidate) -> Result<Run, StudyError> {
-        let Some(quality) = candidate.build else {
-            return self.render(subject, candidate, self.plan.repeats);
-        };
-        let watch = Stopwatch::start();
-        subject.rebuild(quality)?;
-        let built = watch.elapsed();
-        let run = self.render(subject, candidate, self.plan.repeats);
-        subject.rebuild(BuildQuality::default())?;
-        let mut run = run?;
-        run.counted.set(Stage::Build, built);
-        Ok(run)
     }
 
     /// Renders a walk-through over `views` once. Returns its last image with mean times and numbers of new records.
@@ -103,7 +86,8 @@ impl Study<'_> {
         for _ in 0..repeats.max(1) {
             let mut output = self.render_once(subject, candidate)?;
             let nonfinite = output.nonfinite + output.color.remove_nonfinite();
-            let run = Run { color: output.color, counted: Counted::new(&output.stats, nonfinite) };
+            let counted = Counted { work: output.work, ..Counted::new(&output.stats, nonfinite) };
+            let run = Run { color: output.color, counted };
             let seconds = |run: &Run| run.counted.seconds(&Stage::ALL);
             if best.as_ref().is_none_or(|best| seconds(&run) < seconds(best)) {
                 best = Some(run);
@@ -124,7 +108,7 @@ impl Study<'_> {
         let mut output = finish.apply(&method, output);
         let failure = output.denoised.as_ref().and_then(|denoised| denoised.as_ref().err());
         if let Some(error) = finish.load_error().or(failure) {
-            return Err(StudyError::Denoise(error.clone()));
+            return Err(StudyError::Render(error.to_string()));
         }
         if !output.complete {
             return Err(StudyError::Interrupted);

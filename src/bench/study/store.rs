@@ -33,7 +33,7 @@ impl Store {
         let folder = folder.join("pictures");
         match std::fs::create_dir_all(&folder) {
             Ok(()) => Ok(Store { folder }),
-            Err(source) => Err(StudyError::File { path: folder, source }),
+            Err(source) => Err(StudyError::write(&folder, source)),
         }
     }
 
@@ -61,7 +61,7 @@ impl Store {
         film.remove_nonfinite();
         film.metadata.set("key", key.to_string());
         film.metadata.set("facts", stored.facts.to_string());
-        write_exr(&self.file(name, key), &film).map_err(StudyError::Write)
+        write_exr(&self.file(name, key), &film).map_err(|error| StudyError::Output(error.to_string()))
     }
 
     fn file(&self, name: &str, key: &Value) -> PathBuf {

@@ -2,9 +2,9 @@
 
 use super::store::hash_debug;
 use super::{Study, StudyError};
-use embree::BuildQuality;
 use readers::{LoadOptions, Severity};
-use render::session::{OpenError, Opened, Session};
+use render::session::{Opened, Session};
+use std::io;
 use std::path::{Path, PathBuf};
 use world::view::View;
 
@@ -45,21 +45,21 @@ impl Study<'_> {
         Ok(Subject { name, hash, triangles, value: 0.0, load: None, session, view })
     }
 
+    /// Writes meshes of a scene of the study's own, and returns its description.
+    pub fn write_scene(&self, write: impl Fn(&Path) -> io::Result<String>) -> Result<String, StudyError> {
+        let folder = &self.plan.folder;
+        write(folder).map_err(|source| StudyError::write(folder, source))
+    }
+
     /// Writes a scene of the study's own into its folder, and loads it.
     pub fn own_subject(&self, name: &str, text: &str) -> Result<Subject, StudyError> {
         let path = self.plan.folder.join(format!("{name}.toml"));
-        std::fs::write(&path, text).map_err(|source| StudyError::File { path: path.clone(), source })?;
+        std::fs::write(&path, text).map_err(|source| StudyError::write(&path, source))?;
         self.subject(&path)
     }
 }
 
 impl Subject {
-    /// Builds the acceleration structure again.
-    pub fn rebuild(&mut self, quality: BuildQuality) -> Result<(), StudyError> {
-        let rebuilt = self.session.world.rebuild(quality);
-        rebuilt.map_err(|source| OpenError::Build { path: PathBuf::from(&self.name), source }.into())
-    }
-
     /// Returns the views of a walk-through that ends at the view of the image: the frames of the camera path after the
     /// image, in reverse. `None` if the path has too few frames or lacks the image's camera.
     pub fn walk(&self, frames: usize) -> Option<Vec<View>> {

@@ -22,17 +22,15 @@
 //! pixel on the same eye samples and virtual lights, which leaves out clamping as well.
 
 mod entries;
-mod images;
 mod paper;
 
 use super::document::Grid;
-use super::plot::{Chart, Colour};
+use super::plot::{Chart, Colour, Line};
 use super::study::{
-    Answer, Bounded, Candidate, Cell, Column, Curve, Figure, Group, Question, Results, Shot, Study,
-    StudyError, Truth, bounded, optional, time_to,
+    Answer, Bounded, Candidate, Cell, Column, Curve, Figure, Group, Question, Shot, Study, StudyError, Truth,
+    bounded, optional, time_to,
 };
-use super::thumbnail::strip;
-use super::{Benchmark, Kind, Scenes};
+use super::{Benchmark, Kind, Results, Scenes};
 use base::stats::Stage;
 use entries::{OPPONENTS, entries, lightcuts};
 use paper::{CLAIMS, LEGEND, SAVED_BY_ANISOTROPY};
@@ -54,14 +52,10 @@ pub(super) const BENCHMARK: Benchmark = Benchmark {
 const CHART: &str = "Lower left is better. Each point is an image. Lines join images of one method that no other image of it \
     beats. FLIP is against the reference. relMSE of light is without aliasing and noise.";
 
-/// Images that are shown side by side.
-const SHOWN: [&str; 4] = ["default", "cache, anisotropic", "photon-cache", "lightcuts, unshared"];
-
 /// Methods of a scene over processor seconds.
 const QUESTION: Question = Question {
     error: Truth::PixelsAndEyeSamples,
     compared_with: |c: &Candidate| (!c.whole_pixels() && c.label != "lightcuts").then_some(0),
-    keeps_images: true,
     names: 2,
     brief: &[
         "method",
@@ -145,21 +139,26 @@ const QUESTION: Question = Question {
 
 /// Other methods as curves, ours and the paper's as single points.
 const CURVES: &[Curve] = &[
-    Curve { name: "lightcuts", colour: Colour::Orange, joined: true, holds: |c| c.group == Group::Lightcuts },
+    Curve {
+        name: "lightcuts",
+        colour: Colour::Orange,
+        line: Line::Front,
+        holds: |c| c.group == Group::Lightcuts,
+    },
     Curve {
         name: "photon-cache",
         colour: Colour::Olive,
-        joined: true,
+        line: Line::Front,
         holds: |c| c.group == Group::PhotonCache,
     },
     Curve {
         name: "path --denoise",
         colour: Colour::Green,
-        joined: true,
+        line: Line::Front,
         holds: |c| c.group == Group::DenoisedPath,
     },
-    Curve { name: "", colour: Colour::Red, joined: false, holds: |c| c.group == Group::Default },
-    Curve { name: "", colour: Colour::Orange, joined: false, holds: |c| c.group == Group::Unshared },
+    Curve { name: "", colour: Colour::Red, line: Line::None, holds: |c| c.group == Group::Default },
+    Curve { name: "", colour: Colour::Orange, line: Line::None, holds: |c| c.group == Group::Unshared },
 ];
 
 fn time(shot: &Shot, stages: &[Stage]) -> Cell {
@@ -231,11 +230,11 @@ fn run(study: &Study, scenes: &[PathBuf]) -> Result<Results, StudyError> {
         let question = Question { images: &images, others: &others, ..QUESTION };
         answers.push(study.ask(question, [Ok(subject)])?);
     }
-    let mut results = Results::new(study, "Table 1", LEGEND);
+    let mut results = Results::new("Table 1", study.facts(), LEGEND);
     let panels = answers.iter().flat_map(Answer::panels).collect();
     let chart = Chart { axis: "processor seconds", panels, caption: vec![CHART.to_owned()] };
     let document = &mut results.document;
-    document.plot("table1", &chart.description(), &chart.svg());
+    document.plot("table1", &chart);
     document.heading(2, "Beside the paper");
     document.text(
         "Ratios of times with the light pass; in brackets at equal FLIP / PSNR / error of light. The paper's are the \
@@ -244,17 +243,13 @@ fn run(study: &Study, scenes: &[PathBuf]) -> Result<Results, StudyError> {
     let scenes = answers.iter().map(|answer| answer.scene.as_str());
     let heads: Vec<&str> = ["", "paper"].into_iter().chain(scenes).collect();
     document.grid(&Grid::new(heads.len(), &heads, claims(&answers)));
-    for (number, answer) in answers.iter().enumerate() {
+    for answer in &answers {
         let more = json!({ "triangles": answer.triangles, "rows": answer.rows() });
         results.push("scenes", answer.facts(), more);
         let document = &mut results.document;
         document.heading(2, &answer.scene);
         document.text(&format!("{} triangles.", answer.triangles));
-        document.strip(strip(answer, &SHOWN));
         answer.tell(document);
-        document.fold("Every method, its FLIP and the parts with the largest FLIP", |document| {
-            images::show(document, answer, number);
-        });
     }
     Ok(results)
 }

@@ -1,24 +1,21 @@
-//! Settings that trade error for time, each with its levels from coarse to fine around the default, and builds of the
-//! acceleration structure.
+//! Settings that trade error for time, each with its levels from coarse to fine around the default.
 //!
 //! Coarse levels should be faster and fine ones better, if a setting has such an order.
 
-use crate::study::{Candidate, Group};
+use crate::study::{Answer, Candidate, Group, Shot};
 use base::setting::{JudgedBy, Levels, Spec, Value};
-use embree::BuildQuality;
 use render::method::{Method, vpl};
+use serde::Serialize;
 use transport::paths::Estimand;
 
-/// A setting, one of its numbers, or a choice between builds.
+/// A setting, or one of its numbers.
 pub struct Knob {
-    /// Option on the command line, or name of the choice.
+    /// Name of the setting, and of its number.
     pub name: String,
     key: &'static str,
     part: usize,
     /// Levels from coarse to fine.
-    pub levels: Vec<Level>,
-    /// Builds of the levels, in a choice between builds.
-    pub builds: &'static [BuildQuality],
+    levels: Vec<Level>,
     /// Method rendered in a sweep, on which the setting has an effect.
     pub base: Method,
     /// Error that the knob is judged by.
@@ -26,34 +23,56 @@ pub struct Knob {
 }
 
 /// A value of a setting.
-pub struct Level {
+struct Level {
     /// The value as text.
-    pub text: String,
+    text: String,
     /// The value, if it is a number.
     number: Option<f64>,
 }
 
-impl Knob {
-    /// Returns the name without dashes in front.
-    pub fn plain_name(&self) -> &str {
-        self.name.trim_start_matches('-')
-    }
+/// A sweep of one knob.
+#[derive(Serialize)]
+pub struct Sweep {
+    pub knob: String,
+    /// Names of the levels, with the indices of their points.
+    pub levels: Vec<(String, usize)>,
+    /// Error that the knob is judged by.
+    pub judged_by: JudgedBy,
+}
 
+impl Knob {
     /// Returns the label of a level.
-    pub fn label(&self, level: usize) -> String {
+    fn label(&self, level: usize) -> String {
         format!("{} {}", self.name, self.levels[level].text)
     }
 
-    /// Returns the image of a level in a sweep.
-    pub fn candidate(&self, level: usize) -> Candidate {
+    /// Returns the images of all levels.
+    pub fn candidates(&self) -> impl Iterator<Item = Candidate> {
+        (0..self.levels.len()).map(|level| self.candidate(level))
+    }
+
+    /// Returns the sweep of the knob's levels in an answer.
+    pub fn sweep(&self, answer: &Answer) -> Sweep {
+        let place = |level: usize| {
+            let label = self.label(level);
+            let is_level =
+                |shot: &Shot| shot.candidate.group == Group::Sweep && shot.candidate.label == label;
+            Some((self.levels[level].text.clone(), answer.shots.iter().position(is_level)?))
+        };
+        let levels = (0..self.levels.len()).filter_map(place).collect();
+        Sweep { knob: self.name.clone(), levels, judged_by: self.judged_by }
+    }
+
+    /// Returns the image of a level.
+    fn candidate(&self, level: usize) -> Candidate {
         let mut method = self.base;
         self.turn(level, &mut method);
-        let (label, build) = (self.label(level), self.builds.get(level).copied());
-        Candidate { build, options: label.clone(), group: Group::Sweep, ..Candidate::new(label, method) }
+        let label = self.label(level);
+        Candidate { options: label.clone(), group: Group::Sweep, ..Candidate::new(label, method) }
     }
 
     /// Sets a level.
-    pub fn turn(&self, level: usize, method: &mut Method) {
+    fn turn(&self, level: usize, method: &mut Method) {
         let Level { text, number } = &self.levels[level];
         match number {
             Some(number) => method.each(&mut |spec, value| {
@@ -61,50 +80,14 @@ impl Knob {
                     spec.set_number(value, self.part, *number);
                 }
             }),
-            // A test sets all levels. Builds have no setting.
+            // A test sets all levels.
             None => drop(method.set(self.key, text)),
         }
-    }
-
-    /// Returns the index of the level that leaves `method` as it is.
-    pub fn level_of(&self, method: &Method) -> Option<usize> {
-        let same = |level: &usize| {
-            let mut turned = *method;
-            self.turn(*level, &mut turned);
-            turned.settings() == method.settings()
-        };
-        (0..self.levels.len()).find(same)
-    }
-}
-
-/// Returns all knobs of the default method, then the choices between builds.
-pub fn knobs() -> Vec<Knob> {
-    let mut knobs = settings();
-    knobs.push(builds(
-        "build quality",
-        &["low", "medium", "high"],
-        &[BuildQuality::Low, BuildQuality::Medium, BuildQuality::High],
-    ));
-    knobs.push(builds("robust traversal", &["off", "on"], &[BuildQuality::Medium, BuildQuality::Robust]));
-    knobs
-}
-
-/// Returns a choice between builds of the acceleration structure.
-fn builds(name: &str, levels: &[&str], builds: &'static [BuildQuality]) -> Knob {
-    let level = |text: &&str| Level { text: (*text).to_owned(), number: None };
-    Knob {
-        name: name.to_owned(),
-        key: "",
-        part: 0,
-        levels: levels.iter().map(level).collect(),
-        builds,
-        base: Method::default(),
-        judged_by: JudgedBy::Limit,
     }
 }
 
 /// Returns the knobs that are settings of the default method.
-fn settings() -> Vec<Knob> {
+pub fn knobs() -> Vec<Knob> {
     let mut knobs: Vec<Knob> = Vec::new();
     Method::default().visit(&mut |spec, value| {
         let Some(levels) = spec.levels() else { return };
@@ -122,11 +105,10 @@ fn settings() -> Vec<Knob> {
             }
             let comma = if label.is_empty() { "" } else { ", " };
             knobs.push(Knob {
-                name: format!("--{}{comma}{label}", spec.option()),
+                name: format!("{}{comma}{label}", spec.option()),
                 key: spec.key,
                 part,
                 levels: levels_of(spec, levels, value, part),
-                builds: &[],
                 base,
                 judged_by: levels.judged_by,
             });
@@ -161,13 +143,12 @@ mod tests {
 
     #[test]
     fn every_knob_has_distinct_levels_that_change_the_settings_and_holds_the_default() {
-        let knobs = settings();
-        assert!(knobs.iter().any(|knob| knob.name == "--reach, largest"));
+        let knobs = knobs();
+        assert!(knobs.iter().any(|knob| knob.name == "reach, largest"));
         for knob in &knobs {
-            let candidates: Vec<Candidate> =
-                (0..knob.levels.len()).map(|level| knob.candidate(level)).collect();
+            let candidates: Vec<Candidate> = knob.candidates().collect();
             let found: Vec<_> = candidates.iter().map(|c| c.method.settings()).collect();
-            assert!(found.len() > 1 && knob.level_of(&knob.base).is_some(), "{}", knob.name);
+            assert!(found.len() > 1 && found.contains(&knob.base.settings()), "{}", knob.name);
             for candidate in candidates.iter().filter(|_| knob.judged_by != JudgedBy::Flip) {
                 assert!(limit_of(candidate).is_some(), "{}", candidate.label);
             }

@@ -1,9 +1,6 @@
-//! The trade-off of each setting of the default method: error against time, one setting at a time and in a designed
-//! sample.
+//! The trade-off of each setting of the default method: error against time, one setting at a time.
 //!
-//! Every knob is swept alone around the defaults. Then all are varied together in an Owen-scrambled Sobol design, whose
-//! projection on any one knob is stratified. Images are denoised if their method's default says so. Three errors are
-//! distinguished:
+//! Images are denoised if their method's default says so. Three errors are distinguished:
 //!
 //! - from the limit: against the same image with cuts of a quarter of the error, the same virtual lights and the same
 //!   samples of direct light. This is the error added by records and cuts;
@@ -14,28 +11,22 @@
 //! The reference is one of whole pixels. Methods that keep a few eye samples per pixel, and knobs that only have an
 //! effect on these, have limit and light judged on those samples, without their aliasing.
 //!
-//! The settings of `--quality` and denoised paths are shown beside them. Builds of the acceleration structure are
-//! varied alone, not in the designed sample.
+//! The settings of `--quality` and denoised paths are shown beside them.
 
-mod errors;
 mod front;
 mod knobs;
-mod sweep;
 mod tell;
-mod verdict;
 
 use super::study::{
-    Candidate, Cell, Column, Group, Question, Results, Study, StudyError, Truth, denoised_paths, eye_samples,
+    Candidate, Cell, Column, Group, Question, Study, StudyError, Truth, denoised_paths, eye_samples,
     lightcuts_on_eye_samples, photons_on_eye_samples, qualities,
 };
-use super::{Benchmark, Kind, Scenes};
+use super::{Benchmark, Kind, Results, Scenes};
 use base::setting::JudgedBy;
-use errors::{ERRORS, error_of};
-use front::is_on_front;
+use front::{ERRORS, error_of, is_on_front};
 use knobs::{Knob, knobs};
 use render::method::{Method, vpl};
 use std::path::PathBuf;
-use sweep::{Sweep, design, effects, sample, sweep};
 use transport::lightcut::CutSettings;
 use transport::paths::Estimand;
 use transport::radiance_cache::FoundBy;
@@ -80,31 +71,20 @@ const QUESTION: Question = Question {
 
 fn run(study: &Study, scenes: &[PathBuf]) -> Result<Results, StudyError> {
     let mut knobs = knobs();
-    let names: Vec<String> = knobs.iter().map(|knob| knob.plain_name().to_owned()).collect();
+    let names: Vec<String> = knobs.iter().map(|knob| knob.name.clone()).collect();
     let chosen = study.plan.knobs(&names.iter().map(String::as_str).collect::<Vec<_>>())?;
-    knobs.retain(|knob| chosen.contains(&knob.plain_name()));
-    // Knobs of the designed sample have an effect on the default and leave its samples unchanged.
-    let default = Method::default().settings();
-    let in_design = |knob: &&Knob| {
-        knob.builds.is_empty() && knob.judged_by != JudgedBy::Flip && knob.base.settings() == default
-    };
-    let designed: Vec<&Knob> = knobs.iter().filter(in_design).collect();
-    let design = design(&designed, study.plan.samples);
-    let mut results = Results::new(study, "Trade", LEGEND);
+    knobs.retain(|knob| chosen.contains(&&*knob.name));
+    let mut results = Results::new("Trade", study.facts(), LEGEND);
     for path in scenes {
         let mut images = vec![Candidate::new("default", Method::default())];
         images.extend(others());
         images.extend(denoised_paths(study));
         images.extend(qualities());
-        let levels =
-            |knob: &'_ Knob| (0..knob.levels.len()).map(|level| knob.candidate(level)).collect::<Vec<_>>();
-        images.extend(knobs.iter().flat_map(levels));
-        images.extend(design.iter().enumerate().map(|(i, levels)| sample(i, &designed, levels)));
+        images.extend(knobs.iter().flat_map(Knob::candidates));
         let question = Question { images: &images, others: &limits(), ..QUESTION };
         let answer = study.ask(question, [study.subject(path)])?;
-        let sweeps: Vec<Sweep> = knobs.iter().map(|knob| sweep(&answer, knob)).collect();
-        let effects = effects(&answer, &designed, &design);
-        tell::section(&mut results, &answer, &sweeps, &effects);
+        let sweeps: Vec<_> = knobs.iter().map(|knob| knob.sweep(&answer)).collect();
+        tell::section(&mut results, &answer, &sweeps);
     }
     Ok(results)
 }

@@ -141,7 +141,6 @@ fn prepared_rays_of_every_width_find_the_hits_of_packets() {
         let expected: u64 = packets.iter().map(count).sum();
         for (width, coherent) in Width::ALL.into_iter().flat_map(|width| [(width, false), (width, true)]) {
             let packets = || packets.iter().map(|packet| (packet, 0x7ff7));
-            assert_eq!(PreparedRays::for_hits(packets(), width).hits(&accel, coherent), expected);
             assert_eq!(PreparedRays::new(packets(), width).occluded(&accel, coherent), expected);
         }
     }

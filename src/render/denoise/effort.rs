@@ -8,7 +8,7 @@
 //! Units: as in [`crate::cost`].
 
 use super::Quality;
-use crate::cost::PRICES;
+use crate::calibration::PRICES;
 
 /// Light of an image that is sampled, and so has noise.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -47,6 +47,8 @@ pub struct MethodChoice {
     pub ahead: f64,
     /// Number of paths that reduce noise as much as a first sample of the cache, with its extra samples.
     pub paths_a_sample: f64,
+    /// Variance of a path over that of a sample of the cache.
+    pub quotient: f64,
     /// Rays per path over rays per sample of the cache.
     pub rays_ratio: f64,
     /// Rays of the pilot.
@@ -235,6 +237,7 @@ impl Chooser {
             reason: Reason::Work,
             ahead,
             paths_a_sample: self.pilot.paths_a_sample(f64::from(cache.spp()), pixels),
+            quotient: self.pilot.quotient(cache.spp().into()),
             rays_ratio: rays_of_paths / rays_of_sampled.max(f64::MIN_POSITIVE),
             pilot_rays: rays,
             seldom,

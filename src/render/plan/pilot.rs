@@ -13,6 +13,7 @@
 //! The pilot covers the whole film and has seeds of its own. So crops of an image, and images to be merged, have the
 //! same method.
 
+use crate::calibration::PRICES;
 use crate::method::{LightStore, Method, PILOT_SPP, SampledPixels};
 use base::film::Window;
 use base::progress::Control;
@@ -34,12 +35,7 @@ const SEED: u32 = 0x6c62_272e;
 const TRIMMED: f64 = 0.01;
 /// Luminance that counts as dark, over the 90th percentile.
 const DARK: f64 = 0.1;
-/// Number of paths that replace a sample of the cache, with its extra samples, if both have the same variance.
-const PATHS_PER_SAMPLE: f64 = 1.8;
-/// Exponent by which that number grows with the quotient of the variances. A denoiser removes most noise, whatever its
-/// variance, and leaves edges.
-const BY_VARIANCE: f64 = 0.33;
-/// Exponent by which that number grows below [`SMALL`] pixels. Extra samples gain more if more of a film is edges.
+/// Exponent by which the number of paths that replace a sample grows below [`SMALL`] pixels. Extra samples gain more if more of a film is edges.
 const BY_SMALLNESS: f64 = 0.25;
 /// Number of pixels of a small film.
 const SMALL: f64 = 262_144.0;
@@ -128,10 +124,15 @@ impl Pilot {
     ///
     /// The quality is that of the level with `spp` samples, on a film of so many pixels.
     pub fn paths_a_sample(&self, spp: f64, film_pixels: u64) -> f64 {
-        let cached = CACHED * (CACHED_SPP / spp.max(1.0));
-        let quotient = self.variance_of_paths / (self.variance_of_sampled + cached);
         let smallness = (SMALL / film_pixels.max(1) as f64).max(1.0);
-        (PATHS_PER_SAMPLE * quotient.powf(BY_VARIANCE) * smallness.powf(BY_SMALLNESS)).max(1.0)
+        let paths = PRICES.paths_per_sample * self.quotient(spp).powf(PRICES.by_variance);
+        (paths * smallness.powf(BY_SMALLNESS)).max(1.0)
+    }
+
+    /// Returns the variance of a path over that of a sample of the cache, at the level with `spp` samples.
+    pub fn quotient(&self, spp: f64) -> f64 {
+        let cached = CACHED * (CACHED_SPP / spp.max(1.0));
+        self.variance_of_paths / (self.variance_of_sampled + cached)
     }
 }
 
@@ -232,7 +233,7 @@ mod tests {
         assert!(at(0.4, 16.0) > 1.2 * at(0.2, 16.0));
         // The cache's own errors have the variance 0.004 at 16 samples, and eight times as much at 2.
         let noise = pilot(0.4).variance_of_sampled;
-        let expected = ((noise + 0.032) / (noise + 0.004)).powf(0.33);
+        let expected = ((noise + 0.032) / (noise + 0.004)).powf(PRICES.by_variance);
         let found = at(0.4, 16.0) / at(0.4, 2.0);
         assert!((found / expected - 1.0).abs() < 1e-9 && found > 1.3, "{found} {expected}");
     }

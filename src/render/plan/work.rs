@@ -3,7 +3,8 @@
 //! Denoising takes about as long for every method and is left out.
 
 use super::pilot::Pilot;
-use crate::cost::{PRICES, ScenePrices};
+use crate::calibration::PRICES;
+use crate::cost::ScenePrices;
 use crate::method::{Demand, Method};
 use transport::eye::ExtraSamples;
 

@@ -1,7 +1,7 @@
 //! Time of the stages after the method, measured on a smaller image.
 
 use super::finish::{Finish, guides};
-use crate::cost::PRICES;
+use crate::calibration::PRICES;
 use crate::denoise::effort;
 use crate::method::Method;
 use crate::plan::smaller;

@@ -5,3 +5,4 @@ pub mod hall;
 pub mod kitchen;
 pub mod knot;
 pub mod nave;
+pub mod plaza;

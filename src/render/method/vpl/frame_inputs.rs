@@ -1,7 +1,7 @@
 //! Inputs in which a still, a view of a list and a frame of a film differ.
 
 use super::Settings;
-use crate::cost::PRICES;
+use crate::calibration::PRICES;
 use crate::method::prepared::LitSurfaces;
 use crate::method::renderer::FormerFrames;
 use transport::eye::Settled;

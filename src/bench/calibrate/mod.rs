@@ -1,15 +1,23 @@
-//! How often the planner chooses the better method: the cache, or denoised paths.
+//! Prices of work and constants of the choice between methods, fitted to images; and how often the planner chooses the
+//! better method, the cache or denoised paths.
+//!
+//! The study writes `calibration.rs`, which replaces `src/render/calibration.rs` ([`fit`]).
 //!
 //! Budgets are the processor seconds of the cache at five levels of its settings. The error of paths within a budget is
 //! interpolated between their images. The cost of a choice is its error over the error of the better method.
 
-use super::plot::Colour;
+mod fit;
+mod line;
+
+use super::document::Grid;
+use super::plot::{Colour, Line};
 use super::study::{
-    Answer, Candidate, Cell, Column, Curve, Errors, Figure, Question, Results, Shot, Study, StudyError,
-    Subject, figure, seconds,
+    Answer, Candidate, Cell, Column, Curve, Errors, Figure, Question, Shot, Study, StudyError, Subject,
+    figure, seconds,
 };
-use super::{Benchmark, Kind, Scenes};
+use super::{Benchmark, Kind, Results, Scenes};
 use base::stats::Stopwatch;
+use fit::Fitted;
 use render::method::{LightStore, Method};
 use render::plan::{Chooser, DRAFT, FINAL, Ladder, MethodChoice, PREVIEW};
 use serde::Serialize;
@@ -17,10 +25,10 @@ use serde_json::json;
 use std::path::PathBuf;
 
 pub(super) const BENCHMARK: Benchmark = Benchmark {
-    name: "choice",
-    about: "How often the planner takes the better of cache and denoised paths, and what its choice costs",
+    name: "calibrate",
+    about: "Prices of work and constants of the choice between methods, fitted; how often the choice is right",
     kind: Kind::Study {
-        scenes: Scenes::Files(&["cornell", "knot", "nave", "kitchen", "apartment", "hall"]),
+        scenes: Scenes::Files(&["cornell", "knot", "nave", "kitchen", "apartment", "hall", "plaza"]),
         pixels: [256, 256],
         run,
     },
@@ -28,6 +36,9 @@ pub(super) const BENCHMARK: Benchmark = Benchmark {
 
 /// Levels of the cache whose times are the budgets. Level 4 is the default.
 const LEVELS: [f64; 5] = [1.0, DRAFT, PREVIEW, 4.0, FINAL];
+
+/// Number of trees of the forest, which has the most triangles.
+const FOREST: u32 = 100;
 
 /// Samples per pixel of the paths.
 const SPP: [u32; 4] = [2, 8, 32, 128];
@@ -49,8 +60,8 @@ const QUESTION: Question = Question {
         name: "RMSE of the displayed image",
         error: |s| Some(s.errors.displayed_rmse()),
         curves: &[
-            Curve { name: "cache", colour: Colour::Red, joined: true, holds: |c| !c.is_path() },
-            Curve { name: "path --denoise", colour: Colour::Green, joined: true, holds: |c| c.is_path() },
+            Curve { name: "cache", colour: Colour::Red, line: Line::All, holds: |c| !c.is_path() },
+            Curve { name: "path --denoise", colour: Colour::Green, line: Line::All, holds: |c| c.is_path() },
         ],
     }],
     ..Question::PLAIN
@@ -78,11 +89,16 @@ const BUDGETS: &[Column<Budget>] = &[
 struct Budget {
     /// Settings of the cache that take it.
     options: String,
+    /// Samples per pixel of these.
+    spp: f64,
     seconds: f64,
     cache: Figures,
     /// Interpolated errors.
     paths: Figures,
     chose_paths: bool,
+    /// Variance of a path over that of a sample of the cache, and paths that are expected to replace such a sample.
+    quotient: f64,
+    paths_a_sample: f64,
     /// Expected work of the other method over the work of the chosen one.
     ahead: f64,
     /// Errors of the choice over the errors of the better method.
@@ -108,6 +124,8 @@ struct Pilot {
 /// Answer for a scene.
 struct SceneAnswer {
     answer: Answer,
+    /// Processor seconds of denoising a pixel, by quality: fast, balanced, high.
+    denoising: [Option<f64>; 3],
     budgets: Vec<Budget>,
     pilot_seconds: f64,
     /// Choice at the default settings.
@@ -119,8 +137,12 @@ fn run(study: &Study, files: &[PathBuf]) -> Result<Results, StudyError> {
     for file in files {
         scenes.extend(scene(study, study.subject(file)?)?);
     }
-    let mut results = Results::new(study, "Choices between methods", LEGEND);
+    let forest = study.write_scene(|folder| lightsplat_scenes::forest(FOREST, folder))?;
+    scenes.extend(scene(study, study.own_subject("forest", &forest)?)?);
+    let [width, height] = study.plan.resolution;
+    let mut results = Results::new("Calibration", study.facts(), LEGEND);
     total(&mut results, scenes.iter().flat_map(|scene| &scene.budgets));
+    prices(&mut results, &fit::fit(&scenes, f64::from(width) * f64::from(height)));
     scenes.iter().for_each(|scene| section(&mut results, scene));
     Ok(results)
 }
@@ -137,7 +159,8 @@ fn scene(study: &Study, subject: Subject) -> Result<Option<SceneAnswer>, StudyEr
     let (paths, cache) = answer.shots.split_at(SPP.len());
     let budgets = cache.iter().map(|shot| Budget::new(shot, paths, &pilot.chooser)).collect();
     let choice = pilot.chooser.on_film(&Method::default());
-    Ok(Some(SceneAnswer { answer, budgets, pilot_seconds: pilot.seconds, choice }))
+    let denoising = answer.reference.as_ref().map_or([None; 3], |reference| fit::denoising(&reference.mean));
+    Ok(Some(SceneAnswer { answer, denoising, budgets, pilot_seconds: pilot.seconds, choice }))
 }
 
 impl Pilot {
@@ -162,10 +185,13 @@ impl Budget {
         let cost = |chosen: f64, best: f64| if chosen > best { chosen / best } else { 1.0 };
         Budget {
             options: method.scaled_options(),
+            spp: method.spp().into(),
             seconds: shot.seconds(),
             cache,
             paths,
             chose_paths,
+            quotient: choice.quotient,
+            paths_a_sample: choice.paths_a_sample,
             ahead: choice.ahead,
             cost: chosen.with(cache.with(paths, f64::min), cost),
         }
@@ -218,8 +244,23 @@ fn total<'b>(results: &mut Results, budgets: impl Iterator<Item = &'b Budget>) {
     ));
 }
 
+/// Adds the fitted values, and the file that holds them.
+fn prices(results: &mut Results, fitted: &[Fitted]) {
+    results.json["calibration"] = json!(fitted);
+    results.document.heading(2, "Prices and constants");
+    let row = |price: &Fitted| {
+        let texts =
+            [figure(price.used), figure(price.value), figure(price.residual), price.images.to_string()];
+        [price.name.to_owned()].into_iter().chain(texts).collect()
+    };
+    let heads = ["name", "used", "fitted", "single images, factor", "images"];
+    results.document.grid(&Grid::new(1, &heads, fitted.iter().map(row).collect()));
+    let from = ["version", "processor", "date"].map(|name| results.fact(name)).join(", ");
+    results.document.file("calibration.rs", fit::source(fitted, &format!("{from}.")));
+}
+
 fn section(results: &mut Results, scene: &SceneAnswer) {
-    let SceneAnswer { answer, budgets, pilot_seconds, choice } = scene;
+    let SceneAnswer { answer, budgets, pilot_seconds, choice, .. } = scene;
     let pilot = json!({
         "pilot_seconds": pilot_seconds,
         "pilot_rays": choice.pilot_rays,
@@ -231,7 +272,7 @@ fn section(results: &mut Results, scene: &SceneAnswer) {
     results.push("scenes", answer.facts(), pilot);
     let document = &mut results.document;
     document.heading(2, &answer.scene);
-    answer.draw(document);
+    answer.draw(document, &answer.scene, answer.panels());
     document.text(&format!(
         "A sample of the cache equals {} paths, each with {} times its rays. The pilot took {} s, {} rays.",
         figure(choice.paths_a_sample),
