@@ -100,7 +100,7 @@ impl Image {
 
     /// Returns the queries of the eye pass, and of all other steps.
     fn queries(&self) -> [[Metered; 3]; 2] {
-        let eye = meter::of_stage(&self.stats, Stage::EyePass);
+        let eye = self.stats.metered(Stage::EyePass);
         let mut others = self.queries;
         others.iter_mut().zip(eye).for_each(|(all, eye)| {
             *all = Metered { rays: all.rays - eye.rays, seconds: (all.seconds - eye.seconds).max(0.0) };

@@ -1,7 +1,7 @@
 //! Prices of work, and constants of the choice between methods.
 //!
-//! `lightsplat bench calibrate` fits them to images and writes this file. A comment has the factor by which single
-//! images differ from the value, as a root mean square. Values without a comment are not fitted.
+//! `lightsplat bench calibrate` fits them to images and writes this file. A comment has the factor by which
+//! single images differ from the value, as a root mean square. Values without a comment are not fitted.
 //!
 //! Values before the first fit: two cores of an AMD EPYC, November 2026.
 

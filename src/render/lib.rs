@@ -1,9 +1,9 @@
 //! Images of a scene: methods, settings planned for a time or an error, sessions and walks.
 //!
 //! [`session`] is the interface: a scene that is ready to render, and its frames. [`walk`] renders the frames of a
-//! camera path. [`method`] holds the renderers that are compared. [`cost`] counts their work, [`prices`] prices it, with
-//! the values in [`calibration`]. [`plan`] chooses
-//! settings, [`verify`] measures the error of an image, [`denoise`] removes its noise.
+//! camera path. [`method`] holds the renderers that are compared. [`cost`] counts their work, [`prices`] and
+//! [`calibration`] price it. [`plan`] chooses settings, [`verify`] measures the error of an image, [`denoise`] removes
+//! its noise.
 
 #![forbid(unsafe_code)]
 

@@ -1,6 +1,6 @@
 //! Prices that turn counts of work into time, and the constants of the choice between methods.
 //!
-//! Their values are in [`crate::calibration`].
+//! Values are in [`crate::calibration`].
 
 use oidn::Quality;
 use serde::Serialize;

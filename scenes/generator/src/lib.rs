@@ -14,8 +14,8 @@ pub use files::{NAMES, file};
 pub use shapes::Part;
 pub use sized::{dunes, forest};
 
-/// Parts of the scene called `name`, or `None` where there is no such generator. A number after `plaza` is the number of
-/// its lamps, at most a million.
+/// Parts of the scene called `name`, or `None` where there is no such generator. A number after `plaza` is its number
+/// of lamps, at most a million.
 pub fn generate(name: &str) -> Option<Vec<Part>> {
     if let Some(lamps) = name.strip_prefix("plaza ") {
         return lamps.parse().ok().filter(|lamps| *lamps <= 1_000_000).map(scenes::plaza::parts);

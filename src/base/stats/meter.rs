@@ -2,8 +2,6 @@
 //!
 //! The meter is off until [`start`] is called. A query then costs a test of a flag more. Figures are of all threads.
 
-use super::Stage;
-use super::{Counter, Stats};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
 use std::time::Instant;
 
@@ -39,11 +37,6 @@ pub struct Metered {
 impl Query {
     /// All kinds.
     pub const ALL: [Query; 3] = [Query::CoherentHits, Query::Hits, Query::Shadows];
-
-    /// Returns the names of a stage's counters of rays and of seconds.
-    fn counters(self, stage: Stage) -> [String; 2] {
-        ["rays", "seconds"].map(|what| format!("Meter/{self:?}, {}, {what}", stage.name()))
-    }
 }
 
 /// Counts of a kind of query.
@@ -99,7 +92,11 @@ fn metered<R>(kind: Query, rays: u64, work: impl FnOnce() -> R) -> R {
     result
 }
 
-/// Returns the figures so far.
+/// Returns the figures of each kind since [`start`]; `None` if the meter is off.
+pub fn figures() -> Option<[Metered; 3]> {
+    IS_ON.load(Relaxed).then(read)
+}
+
 fn read() -> [Metered; 3] {
     let own = own_nanoseconds();
     COUNTS.each_ref().map(|counts| {
@@ -117,49 +114,25 @@ fn own_nanoseconds() -> f64 {
     (0..EMPTY).map(empty).sum::<f64>() / f64::from(EMPTY)
 }
 
-/// Runs a stage, and adds the figures of its queries to `stats` if the meter is on.
-pub(super) fn stage<R>(stats: &mut Stats, stage: Stage, work: impl FnOnce() -> R) -> R {
-    if !IS_ON.load(Relaxed) {
-        return work();
-    }
-    let before = read();
-    let result = work();
-    for ((kind, before), after) in Query::ALL.into_iter().zip(before).zip(read()) {
-        let figures = [after.rays - before.rays, after.seconds - before.seconds];
-        kind.counters(stage).iter().zip(figures).for_each(|(name, figure)| stats.add(name, figure));
-    }
-    result
-}
-
-/// Returns the figures of a stage that [`Stats::time`] ran while the meter was on.
-pub fn of_stage(stats: &Stats, stage: Stage) -> [Metered; 3] {
-    let figure = |name: &String| match stats.get(name) {
-        Some(Counter::Sum(figure)) => figure,
-        _ => 0.0,
-    };
-    Query::ALL.map(|kind| {
-        let [rays, seconds] = kind.counters(stage).each_ref().map(figure);
-        Metered { rays, seconds }
-    })
-}
-
 #[cfg(test)]
 mod tests {
+    use super::super::{Stage, Stats};
     use super::*;
 
     #[test]
     fn queries_count_while_the_meter_is_on() {
         let work = |rays: u32| query(Query::Shadows, || rays, || std::hint::black_box(rays));
         work(5);
+        assert_eq!(figures(), None);
         start();
         let mut stats = Stats::new();
         stats.time(Stage::EyePass, || (0..26).map(work).sum::<u32>());
         query(Query::Hits, || 7, || ());
         let all = stop();
         work(5);
-        let eye = of_stage(&stats, Stage::EyePass);
+        let eye = stats.metered(Stage::EyePass);
         assert_eq!((eye[2].rays, all[2].rays, all[1].rays, all[0]), (325.0, 325.0, 7.0, Metered::default()));
         assert!((0.0..0.1).contains(&eye[2].seconds), "{eye:?}");
-        assert_eq!(of_stage(&stats, Stage::Render), [Metered::default(); 3]);
+        assert_eq!(stats.metered(Stage::Render), [Metered::default(); 3]);
     }
 }

@@ -15,6 +15,7 @@ mod report;
 mod stage;
 mod sum;
 
+use meter::{Metered, Query};
 use std::collections::BTreeMap;
 
 pub use contributions::Contributions;
@@ -63,10 +64,28 @@ impl Stats {
 
     /// Runs `work` and adds its time to `stage`.
     pub fn time<R>(&mut self, stage: Stage, work: impl FnOnce() -> R) -> R {
-        let watch = Stopwatch::start();
-        let result = meter::stage(self, stage, work);
+        let (watch, before) = (Stopwatch::start(), meter::figures());
+        let result = work();
         self.add_time(stage, watch.elapsed());
+        if let (Some(before), Some(after)) = (before, meter::figures()) {
+            for (kind, (before, after)) in Query::ALL.into_iter().zip(before.into_iter().zip(after)) {
+                let [rays, seconds] = metered_counters(kind, stage);
+                self.add(&rays, after.rays - before.rays);
+                self.add(&seconds, after.seconds - before.seconds);
+            }
+        }
         result
+    }
+
+    /// Returns the queries of a stage that [`Stats::time`] ran while the meter was on.
+    pub fn metered(&self, stage: Stage) -> [Metered; 3] {
+        Query::ALL.map(|kind| {
+            let [rays, seconds] = metered_counters(kind, stage).map(|name| match self.get(&name) {
+                Some(Counter::Sum(figure)) => figure,
+                _ => 0.0,
+            });
+            Metered { rays, seconds }
+        })
     }
 
     /// Adds everything in `other`. A fixed order of merging gives the same figures on every run.
@@ -107,6 +126,11 @@ impl Stats {
             }
         }
     }
+}
+
+/// Returns the names of a stage's counters of queries: rays and seconds.
+fn metered_counters(kind: Query, stage: Stage) -> [String; 2] {
+    ["rays", "seconds"].map(|what| format!("Meter/{kind:?}, {}, {what}", stage.name()))
 }
 
 #[cfg(test)]

@@ -3,7 +3,7 @@
 //! A price is the geometric mean over images, or a line over the doublings of the triangles. The work of a step is
 //! priced by the step's own time. Prices of rays beside paths are relative to a ray of a path in the scene.
 
-use super::SceneAnswer;
+use super::answer::SceneAnswer;
 use super::line::{line, residual};
 use crate::study::{Bounded, Shot, time_to};
 use base::film::Image;
@@ -185,8 +185,8 @@ pub fn denoising(image: &Image) -> [Option<f64>; 3] {
 
 /// Head of the file of the prices.
 const HEAD: &str = "//! Prices of work, and constants of the choice between methods.\n//!\n\
-    //! `lightsplat bench calibrate` fits them to images and writes this file. A comment has the factor by which single\n\
-    //! images differ from the value, as a root mean square. Values without a comment are not fitted.\n";
+    //! `lightsplat bench calibrate` fits them to images and writes this file. A comment has the factor by which\n\
+    //! single images differ from the value, as a root mean square. Values without a comment are not fitted.\n";
 
 /// Returns the text of `src/render/calibration.rs`, with the program and machine that it is from.
 pub fn source(fitted: &[Fitted], from: &str) -> String {

@@ -6,21 +6,21 @@
 //! Budgets are the processor seconds of the cache at five levels of its settings. The error of paths within a budget is
 //! interpolated between their images. The cost of a choice is its error over the error of the better method.
 
+mod answer;
 mod fit;
 mod line;
 
 use super::document::Grid;
 use super::plot::{Colour, Line};
 use super::study::{
-    Answer, Candidate, Cell, Column, Curve, Errors, Figure, Question, Shot, Study, StudyError, Subject,
-    figure, seconds,
+    Candidate, Cell, Column, Curve, Figure, Question, Shot, Study, StudyError, Subject, figure, seconds,
 };
 use super::{Benchmark, Kind, Results, Scenes};
+use answer::{Budget, Figures, SceneAnswer};
 use base::stats::Stopwatch;
 use fit::Fitted;
 use render::method::{LightStore, Method};
-use render::plan::{Chooser, DRAFT, FINAL, Ladder, MethodChoice, PREVIEW};
-use serde::Serialize;
+use render::plan::{Chooser, DRAFT, FINAL, Ladder, PREVIEW};
 use serde_json::json;
 use std::path::PathBuf;
 
@@ -85,51 +85,12 @@ const BUDGETS: &[Column<Budget>] = &[
     Column::new("", "FLIP", |_, b| Cell::figure(b.cost.flip)),
 ];
 
-/// A budget, and the errors of both methods within it.
-struct Budget {
-    /// Settings of the cache that take it.
-    options: String,
-    /// Samples per pixel of these.
-    spp: f64,
-    seconds: f64,
-    cache: Figures,
-    /// Interpolated errors.
-    paths: Figures,
-    chose_paths: bool,
-    /// Variance of a path over that of a sample of the cache, and paths that are expected to replace such a sample.
-    quotient: f64,
-    paths_a_sample: f64,
-    /// Expected work of the other method over the work of the chosen one.
-    ahead: f64,
-    /// Errors of the choice over the errors of the better method.
-    cost: Figures,
-}
-
-/// Errors that choices are judged by.
-#[derive(Clone, Copy, Serialize)]
-struct Figures {
-    /// Root mean square error of the displayed image.
-    displayed: f64,
-    flip: f64,
-}
-
 /// The planner's pilot of a scene.
 struct Pilot {
     chooser: Chooser,
     ladder: Ladder,
     /// Processor seconds that it took.
     seconds: f64,
-}
-
-/// Answer for a scene.
-struct SceneAnswer {
-    answer: Answer,
-    /// Processor seconds of denoising a pixel, by quality: fast, balanced, high.
-    denoising: [Option<f64>; 3],
-    budgets: Vec<Budget>,
-    pilot_seconds: f64,
-    /// Choice at the default settings.
-    choice: MethodChoice,
 }
 
 fn run(study: &Study, files: &[PathBuf]) -> Result<Results, StudyError> {
@@ -174,6 +135,7 @@ impl Pilot {
 }
 
 impl Budget {
+    /// Judges a choice.
     fn new(shot: &Shot, paths: &[Shot], chooser: &Chooser) -> Budget {
         let method = &shot.candidate.method;
         let curve: Vec<(f64, Figures)> =
@@ -195,16 +157,6 @@ impl Budget {
             ahead: choice.ahead,
             cost: chosen.with(cache.with(paths, f64::min), cost),
         }
-    }
-}
-
-impl Figures {
-    fn of(errors: &Errors) -> Figures {
-        Figures { displayed: errors.displayed_rmse(), flip: errors.flip }
-    }
-
-    fn with(self, other: Figures, f: impl Fn(f64, f64) -> f64) -> Figures {
-        Figures { displayed: f(self.displayed, other.displayed), flip: f(self.flip, other.flip) }
     }
 }
 

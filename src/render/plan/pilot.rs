@@ -35,7 +35,8 @@ const SEED: u32 = 0x6c62_272e;
 const TRIMMED: f64 = 0.01;
 /// Luminance that counts as dark, over the 90th percentile.
 const DARK: f64 = 0.1;
-/// Exponent by which the number of paths that replace a sample grows below [`SMALL`] pixels. Extra samples gain more if more of a film is edges.
+/// Exponent by which the number of paths that replace a sample grows below [`SMALL`] pixels. Extra samples gain more if
+/// more of a film is edges.
 const BY_SMALLNESS: f64 = 0.25;
 /// Number of pixels of a small film.
 const SMALL: f64 = 262_144.0;

@@ -1,0 +1,56 @@
+//! Figures of a scene that prices and choices are judged by.
+
+use crate::study::{Answer, Errors};
+use render::plan::MethodChoice;
+use serde::Serialize;
+
+/// A budget, and the errors of both methods within it.
+pub struct Budget {
+    /// Settings of the cache that take it.
+    pub options: String,
+    /// Samples per pixel of these.
+    pub spp: f64,
+    pub seconds: f64,
+    pub cache: Figures,
+    /// Interpolated errors.
+    pub paths: Figures,
+    pub chose_paths: bool,
+    /// Variance of a path over that of a sample of the cache, and paths that are expected to replace such a sample.
+    pub quotient: f64,
+    pub paths_a_sample: f64,
+    /// Expected work of the other method over the work of the chosen one.
+    pub ahead: f64,
+    /// Errors of the choice over the errors of the better method.
+    pub cost: Figures,
+}
+
+/// Errors that choices are judged by.
+#[derive(Clone, Copy, Serialize)]
+pub struct Figures {
+    /// Root mean square error of the displayed image.
+    pub displayed: f64,
+    pub flip: f64,
+}
+
+/// Answer for a scene.
+pub struct SceneAnswer {
+    pub answer: Answer,
+    /// Processor seconds of denoising a pixel, by quality: fast, balanced, high.
+    pub denoising: [Option<f64>; 3],
+    pub budgets: Vec<Budget>,
+    pub pilot_seconds: f64,
+    /// Choice at the default settings.
+    pub choice: MethodChoice,
+}
+
+impl Figures {
+    /// Takes the errors of an image.
+    pub fn of(errors: &Errors) -> Figures {
+        Figures { displayed: errors.displayed_rmse(), flip: errors.flip }
+    }
+
+    /// Combines errors with others.
+    pub fn with(self, other: Figures, f: impl Fn(f64, f64) -> f64) -> Figures {
+        Figures { displayed: f(self.displayed, other.displayed), flip: f(self.flip, other.flip) }
+    }
+}
