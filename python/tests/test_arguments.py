@@ -12,7 +12,7 @@ class Arguments(unittest.TestCase):
 
     def test_values_become_words(self):
         self.check(["--spp=16", "--method=cache"], spp=16, method="cache")
-        self.check(["--max-depth=5", "--epsilon=0.5"], max_depth=5, epsilon=0.5)
+        self.check(["--max-depth=5", "--set=epsilon=0.5"], max_depth=5, set={"epsilon": 0.5})
         self.check(["--exposure=-2"], exposure=-2)
         self.check(["--exposure=auto+1", "--background=none"], exposure="auto+1", background="none")
         self.check(["--env=maps/sky.hdr"], env=Path("maps/sky.hdr"))

@@ -13,7 +13,7 @@ use super::reading_args::ReadingArgs;
 use super::short_help::shortened;
 use super::values::{Bytes, ImageFormat, ProgressMode, counted, q_scale};
 use super::views_args::ViewsArgs;
-use super::{talk, threads, version};
+use super::{set_args, talk, threads, version};
 use clap::{Arg, ArgGroup, Args, CommandFactory, FromArgMatches, Parser, Subcommand, ValueEnum};
 use render::walk::{FileNames, FrameList};
 use std::env;
@@ -43,7 +43,7 @@ impl Cli {
         if arguments.get(1).is_some_and(|first| first == "--version") {
             command = command.long_version(version::text());
         }
-        let matches = command.try_get_matches_from_mut(arguments)?;
+        let matches = command.try_get_matches_from_mut(set_args::joined(arguments)?)?;
         Cli::from_arg_matches(&matches).map_err(|error| error.format(&mut command))
     }
 
@@ -65,7 +65,7 @@ impl Cli {
         };
         // Help names environment variables, and does not depend on their values.
         let parsed = |arg: Arg| negative(set(arg).hide_env_values(true));
-        Cli::command().mut_subcommands(|command| shortened(command.mut_args(parsed)))
+        Cli::command().mut_subcommands(|command| shortened(set_args::with_settings(command.mut_args(parsed))))
     }
 }
 

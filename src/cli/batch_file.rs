@@ -6,6 +6,7 @@
 
 use super::args::{Cli, Command};
 use super::exit::Failure;
+use super::set_args;
 use super::walk_job::FIRST_POSE;
 use anyhow::{Context, anyhow, bail};
 use base::file_kind::file_kind;
@@ -87,7 +88,12 @@ impl JobEntry {
                 Some(ContextValue::Strings(arguments)) => arguments.first().map_or("", String::as_str),
                 _ => "",
             };
-            let key = argument.trim_start_matches("--").split([' ', '=']).next().unwrap_or_default();
+            let key = argument
+                .trim_start_matches("--")
+                .trim_start_matches("set ")
+                .split([' ', '='])
+                .next()
+                .unwrap_or_default();
             self.wrong(key, &of_command_line(&error))
         })
     }
@@ -245,12 +251,16 @@ fn is_file(name: &str, value: &str) -> bool {
 ///
 /// `true` stands for a flag. A list of words repeats the option, a list of numbers is one value.
 fn option(name: &str, value: &Value) -> Option<Vec<String>> {
-    let with = |value: String| Some(vec![format!("--{name}={value}")]);
+    let word = set_args::word(name);
+    let with = |value: String| Some(vec![format!("{word}={value}")]);
     match value {
-        Value::Boolean(true) => Some(vec![format!("--{name}")]),
+        Value::Boolean(value) if set_args::takes_value(name) => {
+            with(if *value { "on" } else { "off" }.to_owned())
+        }
+        Value::Boolean(true) => Some(vec![word]),
         Value::Boolean(false) => Some(Vec::new()),
         Value::Array(values) if values.iter().all(Value::is_str) => {
-            Some(values.iter().filter_map(Value::as_str).map(|value| format!("--{name}={value}")).collect())
+            Some(values.iter().filter_map(Value::as_str).map(|value| format!("{word}={value}")).collect())
         }
         Value::Array(values) => {
             let numbers: Option<Vec<String>> = values.iter().map(scalar).collect();

@@ -43,7 +43,8 @@ pub struct BenchArgs {
 #[derive(Clone, Debug, Default, Args, PartialEq)]
 #[command(next_help_heading = "Studies")]
 pub struct StudyArgs {
-    /// Folder for the tables, plots and images. Images that are already there are not rendered again [default: out/NAME]
+    /// Folder for the tables, plots and images. Images that are already there are not rendered again [default:
+    /// out/NAME]
     #[arg(short, long, value_name = "FOLDER")]
     pub output: Option<PathBuf>,
     /// Folder of the scenes that are given by name [default: scenes]

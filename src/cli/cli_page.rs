@@ -1,6 +1,7 @@
 //! The page `docs/cli.md`: all commands and options, from the definition of the command line.
 
 use super::args::Cli;
+use super::set_args;
 use clap::builder::PossibleValue;
 use clap::{Arg, Command};
 use std::fs;
@@ -9,7 +10,7 @@ const HEAD: &str = "\
 # Command line
 
 This page lists every command and option. `lightsplat COMMAND -h` shows the options that most people need. `--help` shows
-all options. To update the page, run `UPDATE_DOCS=1 cargo test -p cli --lib cli_page`.
+all options, `lightsplat help settings` the settings of the paper and of tuning. To update the page, run `UPDATE_DOCS=1 cargo test -p cli --lib cli_page`.
 
 | exit code | meaning |
 |--:|---|
@@ -36,7 +37,23 @@ fn page() -> String {
     let mut command = Cli::definition();
     command.build();
     let commands = command.get_subcommands().filter(|sub| sub.get_name() != "help");
-    HEAD.to_owned() + &commands.map(|sub| section(sub, "lightsplat", "##")).collect::<String>()
+    let commands: String = commands.map(|sub| section(sub, "lightsplat", "##")).collect();
+    format!("{HEAD}{commands}{}", settings(&command))
+}
+
+/// Returns the section of the settings.
+fn settings(command: &Command) -> String {
+    let mut text = "\n## Settings\n\n`--set KEY=VALUE` sets a setting of the paper or of tuning. `lightsplat help settings` \
+                    lists the settings. In job files, settings are keys like options.\n"
+        .to_owned();
+    for (heading, settings) in set_args::groups(command) {
+        text += &format!("\n**{heading}**\n");
+        for arg in settings {
+            let help = set_args::help(arg).trim_end_matches('.').replace('\n', " ").replace('|', "\\|");
+            text += &format!("\n- `{}`: {help}.{}\n", set_args::usage(arg), values(arg));
+        }
+    }
+    text
 }
 
 /// Returns the section of a command, with its own commands.
@@ -49,7 +66,8 @@ fn section(command: &Command, parent: &str, level: &str) -> String {
         text += &format!("\n- `{value}`: {}.{}\n", help(arg), values(arg));
     }
     let mut headings: Vec<Option<&str>> = Vec::new();
-    let options = || command.get_arguments().filter(|arg| !arg.is_positional() && is_own(arg));
+    let options =
+        || command.get_arguments().filter(|arg| !arg.is_positional() && !arg.is_hide_set() && is_own(arg));
     for heading in options().map(Arg::get_help_heading) {
         if !headings.contains(&heading) {
             headings.push(heading);

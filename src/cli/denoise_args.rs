@@ -62,7 +62,10 @@ impl DenoiseArgs {
 
     /// Refuses options that have no effect on an image that is not denoised.
     pub fn check(&self, denoises: bool) -> Result<(), Failure> {
-        let idle = [("--keep-noisy", self.keep_noisy), ("--denoise-quality", self.denoise_quality.is_some())];
+        let idle = [
+            ("--set keep-noisy", self.keep_noisy),
+            ("--set denoise-quality", self.denoise_quality.is_some()),
+        ];
         match idle.iter().find(|(_, is_there)| *is_there && !denoises) {
             Some((option, _)) => {
                 Err(Failure::usage(anyhow!("{option} needs --denoise; this image is not denoised")))

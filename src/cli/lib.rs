@@ -46,6 +46,7 @@ mod png_args;
 mod progress;
 mod reading_args;
 mod render;
+mod set_args;
 mod sheet;
 mod short_help;
 mod shots;
@@ -73,6 +74,11 @@ use std::process::ExitCode;
 
 /// Parses `arguments` (the program's name first), runs the command and returns its exit code.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
+    let arguments: Vec<OsString> = arguments.into_iter().collect();
+    if arguments.iter().skip(1).eq(["help", "settings"]) {
+        let printed = talk::print(&set_args::list(&Cli::definition()));
+        return printed.map_or_else(|failure| ExitCode::from(failure.code()), |()| ExitCode::SUCCESS);
+    }
     let cli = match Cli::of(arguments) {
         Ok(cli) => cli,
         Err(error) => {

@@ -127,7 +127,7 @@ fn noisy(path: &Path) -> Result<ExrFile, Failure> {
         let Ok(noisy) = file.layer(NOISY) else {
             return refuse(
                 "the image is denoised, and merging does not remove errors of the denoiser; render it with --no-denoise or \
-                 --keep-noisy, and denoise the merged image with `lightsplat denoise`",
+                 --set keep-noisy=on, and denoise the merged image with `lightsplat denoise`",
             );
         };
         file.replace_color(&noisy, None).map_err(Failure::input)?;

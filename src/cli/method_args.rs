@@ -6,6 +6,7 @@ use base::setting::{Choice, Parsed, Spec};
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser, ValueParser};
 use clap::{Arg, ArgAction, ArgMatches, Args, Command, FromArgMatches};
 use render::method::Method;
+use std::sync::OnceLock;
 
 /// Name for a method that lightsplat chooses.
 const AUTO: &str = "auto";
@@ -39,10 +40,11 @@ impl MethodArgs {
         for (key, value) in &self.typed {
             if !method.assign(key, value) {
                 let setting = settings().into_iter().find(|setting| setting.spec.key == *key);
-                let of = setting.map_or(String::new(), |setting| setting.methods().join(", "));
-                let (option, name) = (key.replace('_', "-"), method.name());
+                let of = setting.as_ref().map_or(String::new(), |setting| setting.methods().join(", "));
+                let option = setting.map_or(String::new(), |setting| setting.spec.words(""));
+                let (option, name) = (option.trim_end_matches(['=', ' ']), method.name());
                 return Err(usage(format!(
-                    "--{option} is a setting of --method {of}; --method {name} has no such setting"
+                    "{option} is a setting of --method {of}; --method {name} has no such setting"
                 )));
             }
         }
@@ -112,6 +114,18 @@ fn settings() -> Vec<MethodSetting> {
     all
 }
 
+/// Returns true if an argument is a setting of the paper or of tuning.
+pub fn is_tuning(id: &str) -> bool {
+    static TUNING: OnceLock<Vec<&str>> = OnceLock::new();
+    let find = || settings().iter().filter(|s| s.spec.is_tuning()).map(|s| s.spec.key).collect();
+    TUNING.get_or_init(find).contains(&id)
+}
+
+/// Returns the range of a setting's numbers, if it has one.
+pub fn range(id: &str) -> Option<String> {
+    settings().iter().find(|setting| setting.spec.key == id)?.spec.range_text()
+}
+
 impl MethodSetting {
     /// Returns the names of the methods that have the setting.
     fn methods(&self) -> Vec<&'static str> {
@@ -159,8 +173,6 @@ impl MethodSetting {
         let arg = Arg::new(spec.key).long(spec.option()).help(help);
         let arg = if spec.key == "spp" { arg.short('s').visible_alias("samples") } else { arg };
         let arg = arg.help_heading(Some(spec.heading).filter(|heading| !heading.is_empty()));
-        // The short help has the options that most people need.
-        let arg = arg.hide_short_help(!spec.heading.is_empty());
         if spec.flag {
             let arg = arg.action(ArgAction::Set).num_args(0).default_missing_value("on");
             return arg.value_parser(self.parser());
@@ -217,7 +229,7 @@ mod tests {
     #[test]
     fn settings_of_other_methods_are_refused_and_whose_they_are_is_said() {
         let error = method("path", &[("probe_rays", "64")]).unwrap_err();
-        assert!(error.contains("--probe-rays is a setting of --method cache, photon-cache;"), "{error}");
+        assert!(error.contains("--set probe-rays is a setting of --method cache, photon-cache;"), "{error}");
         assert!(error.contains("--method path has no such setting"), "{error}");
         for (key, value) in [("vpls", "1"), ("clamp", "1"), ("compensation", "on"), ("indirect", "cuts")] {
             let error = method("photon-cache", &[(key, value)]).unwrap_err();

@@ -26,7 +26,7 @@ pub fn run(args: ViewsArgs) -> Result<(), Failure> {
 /// If the arguments or the list are wrong, or a file cannot be written.
 pub fn job(args: ViewsArgs) -> Result<WalkJob, Failure> {
     args.picture.reading.check_unplaced(&format!("the cameras of {}", args.cameras.display()), true)?;
-    walk_job::check_records(&args.method, [("--memory-limit", args.memory_limit.is_some())])?;
+    walk_job::check_records(&args.method, [("--set memory-limit", args.memory_limit.is_some())])?;
     let views = listed(&args)?;
     let goal = Goal {
         denoise_quality: args.picture.denoise.quality(),

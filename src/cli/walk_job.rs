@@ -77,10 +77,10 @@ impl WalkJob {
     pub fn new(args: WalkArgs) -> Result<WalkJob, Failure> {
         args.picture.reading.check_unplaced("the camera path of the scene", false)?;
         let of_records = [
-            ("--memory-limit", args.memory_limit.is_some()),
-            ("--idle-frames", args.idle_frames.is_some()),
-            ("--q-scale", args.q_scale.is_some()),
-            ("--no-reprojection", args.no_reprojection),
+            ("--set memory-limit", args.memory_limit.is_some()),
+            ("--set idle-frames", args.idle_frames.is_some()),
+            ("--set q-scale", args.q_scale.is_some()),
+            ("--set no-reprojection", args.no_reprojection),
         ];
         check_records(&args.method, of_records)?;
         let goal = goal(&args.method, args.quality, &args.picture)?;

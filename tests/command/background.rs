@@ -177,7 +177,7 @@ fn layers_of_first_hits_are_not_averaged() {
     render(&sandbox, "mean.exr", &more).expect(0);
     let short = |length: &&f32| **length > 0.0 && (**length - 1.0).abs() > 1e-3;
     assert!(length(&file(&sandbox, "mean.exr")).pixels.iter().filter(short).count() > 20);
-    render(&sandbox, "first.exr", &[&more[..], &["--aov-mode", "first"]].concat()).expect(0);
+    render(&sandbox, "first.exr", &[&more[..], &["--set", "aov-mode=first"]].concat()).expect(0);
     let first = file(&sandbox, "first.exr");
     assert_eq!(first.metadata().text("aov_mode"), Some("first"));
     assert_eq!(length(&first).pixels.iter().filter(short).count(), 0);

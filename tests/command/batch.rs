@@ -121,7 +121,10 @@ fn wrong_job_files_are_errors_before_anything_is_rendered() {
     // A lone one that fails has no others; its options are found wrong with the line in the file.
     let lone = sandbox("[[picture]]\nscene = 'room.xml'\noutput = 'a.exr'\nmethod = 'path'\nvpls = 9\n");
     let stderr = batch(&lone, &[]).expect(5).stderr;
-    assert!(stderr.contains("jobs.toml, line 3: a.exr: --vpls") && !stderr.contains("others"), "{stderr}");
+    assert!(
+        stderr.contains("jobs.toml, line 3: a.exr: --set vpls") && !stderr.contains("others"),
+        "{stderr}"
+    );
     let sandbox = Sandbox::new();
     assert!(batch(&sandbox, &[]).expect(3).stderr.contains("cannot read jobs.toml"));
 }

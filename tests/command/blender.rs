@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 use std::fs;
 
 /// Options of renders, so that they take little time.
-const SMALL: [&str; 7] = ["-r", "32", "--spp", "1", "--vpls", "500", "--no-denoise"];
+const SMALL: [&str; 7] = ["-r", "32", "--spp", "1", "--set", "vpls=500", "--no-denoise"];
 
 /// Frames of the camera's animation.
 const FRAMES: usize = 13;

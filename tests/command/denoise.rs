@@ -114,7 +114,7 @@ fn a_missing_library_is_a_warning_with_its_remedy_and_a_noisy_picture_that_says_
     sandbox.render("plain.exr", &[]).expect(0);
     let render = Sandbox::path_tracing(
         "4",
-        &["--resolution", "24x16", "--denoise", "--keep-noisy", "--stats", "json"],
+        &["--resolution", "24x16", "--denoise", "--set=keep-noisy=on", "--stats", "json"],
     );
     let run = without_library(&sandbox, &render).expect(0);
     for part in ["warning: the image is not denoised", "OIDN_DIR=", "make setup"] {
@@ -136,7 +136,9 @@ fn a_missing_library_is_a_warning_with_its_remedy_and_a_noisy_picture_that_says_
 fn a_denoised_picture_says_by_what_keeps_what_is_asked_and_is_nearer_to_the_truth() {
     let sandbox = Sandbox::new();
     let verify = ["--verify", "300", "--stats", "json", "--threads", "2"];
-    let Some(run) = denoised(&sandbox, "a.exr", &[&verify[..], &["--keep-noisy"]].concat()) else { return };
+    let Some(run) = denoised(&sandbox, "a.exr", &[&verify[..], &["--set=keep-noisy=on"]].concat()) else {
+        return;
+    };
     let plain = noisy(&sandbox, "plain.exr", &verify).expect(0);
     let [report, plain] =
         [&run.stdout, &plain.stdout].map(|text| serde_json::from_str::<serde_json::Value>(text).unwrap());
@@ -159,7 +161,7 @@ fn a_denoised_picture_says_by_what_keeps_what_is_asked_and_is_nearer_to_the_trut
     }
     let off = noisy(&sandbox, "c.exr", &["--denoise", "--no-denoise", "--stats", "json"]).expect(0);
     assert!(off.stdout.contains("\"denoised\":null"));
-    assert!(noisy(&sandbox, "c.exr", &["--keep-noisy"]).expect(2).stderr.contains("--denoise"));
+    assert!(noisy(&sandbox, "c.exr", &["--set=keep-noisy=on"]).expect(2).stderr.contains("--denoise"));
 }
 
 #[test]
@@ -201,7 +203,7 @@ fn quality_of_denoising_goes_with_the_work_or_is_as_asked() {
     let said = |name: &str| file(&sandbox, name).metadata().text("denoised").unwrap().to_owned();
     let Some(_) = denoised(&sandbox, "auto.exr", &[]) else { return };
     for quality in ["fast", "balanced", "high"] {
-        denoised(&sandbox, &format!("{quality}.exr"), &["--denoise-quality", quality]);
+        denoised(&sandbox, &format!("{quality}.exr"), &["--set", &format!("denoise-quality={quality}")]);
     }
     assert!(
         said("fast.exr").ends_with(", fast quality") && said("balanced.exr").ends_with(", balanced quality")

@@ -123,7 +123,7 @@ fn files_are_what_their_names_say() {
     let piped = { piped }.output().unwrap();
     assert!(piped.status.success() && piped.stdout.starts_with(b"\x89PNG"));
     let mut exr =
-        sandbox.command(&["render", "corner.obj", "-s", "1", "-r", "16", "-o", "-", "--format", "exr"]);
+        sandbox.command(&["render", "corner.obj", "-s", "1", "-r", "16", "-o", "-", "--set", "format=exr"]);
     let exr = exr.output().unwrap();
     fs::write(sandbox.path("piped.exr"), exr.stdout).unwrap();
     assert_eq!(ExrFile::read(&sandbox.path("piped.exr")).unwrap().window().width, 16);

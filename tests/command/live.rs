@@ -47,8 +47,10 @@ fn previews_change_no_bit_and_the_last_one_is_the_image() {
     let files = || [read(&sandbox.path("a.exr")), read(&sandbox.path("a.png"))];
     sandbox.run(&base).expect(0);
     let plain = files();
-    let stderr =
-        sandbox.run(&[&base[..], &["--preview", "new/p.png", "--every", "10ms"]].concat()).expect(0).stderr;
+    let stderr = sandbox
+        .run(&[&base[..], &["--preview", "new/p.png", "--set", "every=10ms"]].concat())
+        .expect(0)
+        .stderr;
     assert!(files() == plain && read(&sandbox.path("new/p.png")) == plain[1], "{stderr}");
     assert!(!stderr.contains("warning"), "{stderr}");
 }
@@ -56,7 +58,7 @@ fn previews_change_no_bit_and_the_last_one_is_the_image() {
 #[test]
 fn previews_are_whole_images_while_the_render_goes_on() {
     let sandbox = Sandbox::new();
-    let preview = ["--preview", "p.png", "--every", "50ms", "--view", "agx"];
+    let preview = ["--preview", "p.png", "--set", "every=50ms", "--view", "agx"];
     let mut child = start(&sandbox, &Sandbox::path_tracing(ENDLESS, &preview));
     let file = sandbox.path("p.png");
     wait_for(&file, &mut child);
@@ -90,7 +92,7 @@ fn a_signal_asks_for_a_preview_beside_the_image() {
 #[test]
 fn a_preview_that_cannot_be_written_is_one_warning() {
     let sandbox = Sandbox::new();
-    let preview = ["--preview", "live/p.png", "--every", "20ms"];
+    let preview = ["--preview", "live/p.png", "--set", "every=20ms"];
     let mut child = start(&sandbox, &Sandbox::path_tracing(ENDLESS, &preview));
     wait_for(&sandbox.path("live/p.png"), &mut child);
     // The run may write a file while the folder goes.
@@ -108,8 +110,8 @@ fn wrong_previews_are_refused_before_rendering() {
         (&["--preview", "p.jpg"][..], 2, "must end in .png"),
         (&["--preview", "a.png"], 2, "two results"),
         (&["--preview", "no/such/p.png"], 4, "does not exist"),
-        (&["--preview", "p.png", "--every", "0s"], 2, "a time like"),
-        (&["--every", "1s"], 2, "--preview"),
+        (&["--preview", "p.png", "--set", "every=0s"], 2, "a time like"),
+        (&["--set", "every=1s"], 2, "--preview"),
         (&["--tev=14158"], 2, "host and port"),
     ] {
         let stderr = sandbox.render("a.exr", more).expect(code).stderr;

@@ -16,9 +16,13 @@ fn run(sandbox: &Sandbox, kibibytes: Option<u32>, arguments: &str) -> Finished {
 #[test]
 fn too_much_for_the_limit_of_the_shell_is_refused_before_anything_is_rendered() {
     let sandbox = Sandbox::new();
-    for wanted in ["--vpls 100000000", "--direct-vpls 100000000", "--method photon-cache --photons 100000000"]
-        .into_iter()
-        .chain(["--method path --resolution 16384x8192", "--method lightcuts --resolution 16384x8192"])
+    for wanted in [
+        "--set vpls=100000000",
+        "--set direct-vpls=100000000",
+        "--method photon-cache --set photons=100000000",
+    ]
+    .into_iter()
+    .chain(["--method path --resolution 16384x8192", "--method lightcuts --resolution 16384x8192"])
     {
         let arguments = format!("render room.xml -o a.exr --threads 1 {wanted}");
         let stderr = run(&sandbox, Some(3_000_000), &arguments).expect(2).stderr;

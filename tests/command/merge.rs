@@ -102,7 +102,7 @@ fn pictures_that_do_not_belong_together_are_refused_with_the_reason() {
         ("also has seed 1", &["--method", "path", "--seed", "1"]),
         ("setting, besides", &["--method", "path", "--seed", "2", "--max-depth", "2"]),
         ("size or crop", &["--method", "path", "--seed", "2", "--crop", "0,0,4,4"]),
-        ("method", &["--seed", "2", "--vpls", "100", "--no-denoise"]),
+        ("method", &["--seed", "2", "--set", "vpls=100", "--no-denoise"]),
         ("scene", &["--method", "path", "--seed", "2"]),
     ];
     for (reason, more) in cases {
@@ -126,11 +126,11 @@ fn of_denoised_pictures_the_noisy_ones_are_merged_if_they_were_kept() {
     let path = |name, seed, more: &[&str]| {
         render(&sandbox, name, seed, "4", &[&["--method", "path", "--denoise"], more].concat());
     };
-    path("a.exr", "1", &["--keep-noisy"]);
+    path("a.exr", "1", &["--set=keep-noisy=on"]);
     if file(&sandbox, "a.exr").metadata().text("denoised") == Some("false") {
         return; // The library is not there.
     }
-    path("b.exr", "2", &["--keep-noisy"]);
+    path("b.exr", "2", &["--set=keep-noisy=on"]);
     merge(&sandbox, &["a.exr", "b.exr"]).expect(0);
     let [a, b, m] = ["a.exr", "b.exr", "m.exr"].map(|name| file(&sandbox, name));
     let noisy = |file: &ExrFile| file.layer("noisy").unwrap();
@@ -139,5 +139,5 @@ fn of_denoised_pictures_the_noisy_ones_are_merged_if_they_were_kept() {
         m.layer("noisy").is_err() && m.layer("variance").is_ok() && m.metadata().get("denoised").is_none()
     );
     path("b.exr", "2", &[]);
-    assert!(merge(&sandbox, &["a.exr", "b.exr"]).expect(3).stderr.contains("--keep-noisy"));
+    assert!(merge(&sandbox, &["a.exr", "b.exr"]).expect(3).stderr.contains("--set keep-noisy=on"));
 }

@@ -28,10 +28,20 @@ fn a_render_writes_picture_preview_variance_and_where_it_comes_from() {
 #[test]
 fn the_settings_of_lightcuts_reach_the_method_and_the_file() {
     let sandbox = Sandbox::new();
-    let options =
-        ["--epsilon", "0.3", "--max-cut", "7", "--vpls", "300", "--direct-vpls", "256", "--clamp", "0"];
-    let shadows = ["--share", "off", "--occluder-slots", "256", "--occluder-ways", "2"];
-    let coarse = [&["--method", "lightcuts", "--tree", "agglomerative"], &options[..], &shadows].concat();
+    let options = [
+        "--set",
+        "epsilon=0.3",
+        "--set",
+        "max-cut=7",
+        "--set",
+        "vpls=300",
+        "--set",
+        "direct-vpls=256",
+        "--set",
+        "clamp=0",
+    ];
+    let shadows = ["--set", "share=off", "--set", "occluder-slots=256", "--set", "occluder-ways=2"];
+    let coarse = [&["--method", "lightcuts", "--set", "tree=agglomerative"], &options[..], &shadows].concat();
     sandbox.render("a.exr", &coarse).expect(0);
     let file = ExrFile::read(&sandbox.path("a.exr")).unwrap();
     assert_eq!(file.metadata().text("method"), Some("lightcuts"));
@@ -45,9 +55,9 @@ fn the_settings_of_lightcuts_reach_the_method_and_the_file() {
     assert_eq!(settings, expected);
     sandbox.render("b.exr", &[&coarse[..], &["--threads", "3"]].concat()).expect(0);
     assert_eq!(read_exr(&sandbox.path("b.exr")).unwrap(), file.color().unwrap());
-    sandbox.render("c.exr", &[&coarse[..], &["--occluder-cache", "off"]].concat()).expect(0);
+    sandbox.render("c.exr", &[&coarse[..], &["--set", "occluder-cache=off"]].concat()).expect(0);
     assert_eq!(read_exr(&sandbox.path("c.exr")).unwrap(), file.color().unwrap());
-    let refused = sandbox.render("d.exr", &["--method", "lightcuts", "--occluder-ways", "9"]).expect(2);
+    let refused = sandbox.render("d.exr", &["--method", "lightcuts", "--set", "occluder-ways=9"]).expect(2);
     assert!(refused.stderr.contains("from 1 to 8"), "{}", refused.stderr);
 }
 
@@ -272,9 +282,9 @@ fn features_are_written_by_every_method_and_agree_with_the_cameras_matrices() {
     let all = "alpha,albedo,depth,normal,geometric-normal,material,object,position";
     let methods: [(&str, &[&str]); 4] = [
         ("path", &[]),
-        ("reconstruction", &["--vpls", "300"]),
-        ("lightcuts", &["--vpls", "300"]),
-        ("photon-cache", &["--photons", "1000", "--gather-rays", "64"]),
+        ("reconstruction", &["--set", "vpls=300"]),
+        ("lightcuts", &["--set", "vpls=300"]),
+        ("photon-cache", &["--set", "photons=1000", "--set", "gather-rays=64"]),
     ];
     let mut albedos = Vec::new();
     for (method, more) in methods {
@@ -317,10 +327,10 @@ fn features_are_written_by_every_method_and_agree_with_the_cameras_matrices() {
 
 #[test]
 fn inspection_writes_its_layers_as_pictures_for_both_caches() {
-    for (method, more) in [("cache", "--vpls"), ("photon-cache", "--photons")] {
+    for (method, more) in [("cache", "vpls=1000"), ("photon-cache", "photons=1000")] {
         let sandbox = Sandbox::new();
-        let options = ["--method", method, more, "1000", "--inspect", "--passes", "1"];
-        let more: &[&str] = if method == "cache" { &[] } else { &["--gather-rays", "64"] };
+        let options = ["--method", method, "--set", more, "--set=inspect=on", "--set", "passes=1"];
+        let more: &[&str] = if method == "cache" { &[] } else { &["--set", "gather-rays=64"] };
         sandbox.render("a.exr", &[&options, more].concat()).expect(0);
         let files = sandbox.files();
         for layer in ["direct", "indirect", "records", "footprint", "gradient", "weights", "seams.1"] {

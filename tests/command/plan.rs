@@ -43,7 +43,7 @@ fn a_time_is_planned_told_and_repeated_by_its_settings() {
 #[test]
 fn an_error_is_met_and_the_same_for_any_number_of_threads() {
     let sandbox = Sandbox::new();
-    let wanted = ["--error", "20%", "--verify", "100", "--verify-samples", "1024", "--stats", "json"];
+    let wanted = ["--error", "20%", "--verify", "100", "--set", "verify-samples=1024", "--stats", "json"];
     let files = ["1", "3"].map(|threads| {
         let run = render(&sandbox, "a.exr", &[&wanted[..], &["--threads", threads]].concat()).expect(0);
         let plan = plan(&run);
@@ -61,8 +61,8 @@ fn an_error_is_met_and_the_same_for_any_number_of_threads() {
 #[test]
 fn an_error_out_of_reach_is_not_claimed_and_typed_settings_are_held() {
     let sandbox = Sandbox::new();
-    let held = ["--vpls", "20", "--epsilon", "0.5", "--max-cut", "3", "--patches", "16"];
-    let wanted = ["--error", "0.001%", "--verify", "50", "--verify-samples", "64", "--stats", "json"];
+    let held = ["--set", "vpls=20", "--set", "epsilon=0.5", "--set", "max-cut=3", "--set", "patches=16"];
+    let wanted = ["--error", "0.001%", "--verify", "50", "--set", "verify-samples=64", "--stats", "json"];
     let run = render(&sandbox, "a.exr", &[&held[..], &wanted].concat()).expect(0);
     let plan = plan(&run);
     assert_eq!(plan["met"], false);
@@ -82,7 +82,7 @@ fn qualities_are_settings_from_rough_to_fine_and_typed_ones_are_held() {
         (report["run"]["method"].clone(), report["run"]["settings"].clone())
     };
     let names = ["draft", "preview", "final", "reference"];
-    let found = names.map(|name| settings(&["--quality", name, "--vpls", "500"]));
+    let found = names.map(|name| settings(&["--quality", name, "--set", "vpls=500"]));
     for (method, settings) in &found {
         assert_eq!((method, &settings["vpls"]), (&"cache".into(), &500.into()));
     }
@@ -139,7 +139,7 @@ fn an_open_method_is_chosen_and_the_reasons_told_and_kept() {
     let rays = &report["counters"]["Plan"]["rays of the pilot"];
     assert_eq!(*rays, facts["pilot_rays"]);
     // A method that is named, or settings that paths lack or that say how good the picture is to be.
-    for closed in [&["--method", "cache"][..], &["--spp", "4"], &["--vpls", "500"]] {
+    for closed in [&["--method", "cache"][..], &["--spp", "4"], &["--set", "vpls=500"]] {
         let run = render(&sandbox, "b.exr", &[closed, &["--stats", "json"]].concat()).expect(0);
         assert!(plan(&run).is_null() && !run.stderr.contains("Method:"), "{closed:?}");
         let report: serde_json::Value = serde_json::from_str(&run.stdout).unwrap();

@@ -108,7 +108,7 @@ fn each_frame_shows_the_pose_of_its_time_as_a_still_of_it_does() {
     assert!(said.contains("1 frames rendered, 2 existed already"), "{said}");
     assert_eq!(light(&colours(&sandbox, "a.2.exr")).1.abs().round(), 0.0);
     let default = ["walk", "m.gltf", "-o", "c.#.exr", "--resolution", "24x24", "--spp", "16", "--no-denoise"];
-    sandbox.run(&[&default[..], &["--no-default-light", "--vpls", "500"]].concat()).expect(0);
+    sandbox.run(&[&default[..], &["--no-default-light", "--set", "vpls=500"]].concat()).expect(0);
     let places = ["c.1.exr", "c.3.exr"].map(|name| light(&colours(&sandbox, name)).1);
     assert!((places[0] + 4.0).abs() < 0.2 && (places[1] - 4.0).abs() < 0.2, "{places:?}");
     assert!(sandbox.files().iter().all(|name| !name.ends_with(".records")));

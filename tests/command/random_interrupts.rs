@@ -16,7 +16,7 @@ const SCENES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes");
 const RUNS: [&str; 14] = [
     "render SCENES/hall.toml -o a.exr --resolution 64x64",
     "render SCENES/apartment.toml -o a.exr --resolution 96x64 --spp 64",
-    "render SCENES/kitchen.toml -o a.exr --resolution 96x64 --direct records",
+    "render SCENES/kitchen.toml -o a.exr --resolution 96x64 --set direct=records",
     "render SCENES/knot.toml -o a.exr --resolution 128x128 --method reconstruction",
     "render SCENES/nave.toml -o a.exr --resolution 64x64 --method lightcuts",
     "render SCENES/kitchen.toml -o a.exr --resolution 64x64 --method photon-cache",
@@ -24,8 +24,8 @@ const RUNS: [&str; 14] = [
     "render SCENES/cornell.toml -o a.exr --resolution 96x96 --time 3s",
     "render SCENES/cornell.toml -o a.exr --resolution 96x96 --verify 2000",
     "walk SCENES/apartment.toml -o a.##.exr --resolution 64x64 --frames 1-3",
-    "render SCENES/cornell.toml -o a.exr --resolution 96x96 --vpls 4000000",
-    "render SCENES/cornell.toml -o a.exr --resolution 96x96 --method photon-cache --photons 4000000",
+    "render SCENES/cornell.toml -o a.exr --resolution 96x96 --set vpls=4000000",
+    "render SCENES/cornell.toml -o a.exr --resolution 96x96 --method photon-cache --set photons=4000000",
     "render SCENES/knot.toml -o a.exr --resolution 1500x1500 --method reconstruction --spp 2",
     "render sheets.toml -o a.exr --resolution 48x48",
 ];

@@ -138,29 +138,29 @@ fn wrong_command_lines_end_with_2_and_say_what_is_wrong() {
         ("--frame", "-1", "1 or more"),
         ("--resolution", "65537x1", "from 1 to 65536"),
         ("--camera", "bob", "chooses among 1"),
-        ("--denoise-quality", "fast", "needs --denoise"),
+        ("--set", "denoise-quality=fast", "needs --denoise"),
     ] {
         let typed = ["render", "room.xml", "-o", "a.exr", "--method", "path", option, value];
         let stderr = sandbox.run(&typed).expect(2).stderr;
         assert!(stderr.contains(expected), "{option} {value}: {stderr}");
     }
-    assert!(render(&["--vpls", "9"]).contains("lightcuts"));
-    render(&["--method", "lightcuts", "--epsilon", "2"]);
-    assert!(render(&["--method", "cache", "--photons", "9"]).contains("photon-cache"));
-    assert!(render(&["--method", "photon-cache", "--vpls", "9"]).contains("no such setting"));
-    assert!(render(&["--probe-rays", "9"]).contains("--method cache, photon-cache"));
-    let by_cuts = ["--method", "cache", "--direct", "cuts", "--indirect", "cuts"];
+    assert!(render(&["--set", "vpls=9"]).contains("lightcuts"));
+    render(&["--method", "lightcuts", "--set", "epsilon=2"]);
+    assert!(render(&["--method", "cache", "--set", "photons=9"]).contains("photon-cache"));
+    assert!(render(&["--method", "photon-cache", "--set", "vpls=9"]).contains("no such setting"));
+    assert!(render(&["--set", "probe-rays=9"]).contains("--method cache, photon-cache"));
+    let by_cuts = ["--method", "cache", "--set", "direct=cuts", "--set", "indirect=cuts"];
     assert!(render(&by_cuts).contains("--method reconstruction"));
     for wrong in [
-        ["--nearest", "1"],
-        ["--gather-rays", "3"],
-        ["--sample-rays", "0"],
-        ["--photons", "-5"],
-        ["--reach", "5,2"],
+        ["--set", "nearest=1"],
+        ["--set", "gather-rays=3"],
+        ["--set", "sample-rays=0"],
+        ["--set", "photons=-5"],
+        ["--set", "reach=5,2"],
     ] {
         render(&["--method", "photon-cache", wrong[0], wrong[1]]);
     }
-    for option in ["--mu", "--series-alpha", "--series-error"] {
+    for option in ["--set=mu", "--set=series-alpha", "--set=series-error"] {
         for wrong in ["nan", "inf", "-1"] {
             render(&["--method", "cache", &format!("{option}={wrong}")]);
         }

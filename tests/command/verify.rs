@@ -9,8 +9,17 @@ fn the_measured_error_is_in_statistics_and_metadata() {
     for (method, against) in
         [("path", "pixels"), ("reconstruction", "eye-samples"), ("lightcuts", "eye-samples")]
     {
-        let options =
-            ["--method", method, "--verify", "50", "--verify-samples", "256", "--stats", "json", "--no-png"];
+        let options = [
+            "--method",
+            method,
+            "--verify",
+            "50",
+            "--set",
+            "verify-samples=256",
+            "--stats",
+            "json",
+            "--no-png",
+        ];
         let run = sandbox.render("a.exr", &options).expect(0);
         let place = |text: &str| run.stderr.find(text).unwrap_or_else(|| panic!("{}", run.stderr));
         assert!(place("wrote a.exr") < place("error, measured by path tracing"));
@@ -42,14 +51,14 @@ fn verifying_options_need_verify_and_sensible_numbers() {
     let sandbox = Sandbox::new();
     for wrong in [
         &["--verify", "3"][..],
-        &["--verify-samples", "256"],
-        &["--verify-against", "pixels"],
-        &["--verify", "50", "--verify-against", "hope"],
+        &["--set", "verify-samples=256"],
+        &["--set", "verify-against=pixels"],
+        &["--verify", "50", "--set", "verify-against=hope"],
     ] {
         sandbox.render("a.exr", wrong).expect(2);
     }
     let options =
-        ["--method", "reconstruction", "--verify", "20", "--verify-against", "pixels", "--stats", "json"];
+        ["--method", "reconstruction", "--verify", "20", "--set", "verify-against=pixels", "--stats", "json"];
     let run = sandbox.render("a.exr", &options).expect(0);
     assert!(run.stdout.contains("\"against\":\"pixels\""), "{}", run.stdout);
 }

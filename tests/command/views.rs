@@ -51,7 +51,7 @@ pub(super) fn sandbox() -> Sandbox {
 fn arguments<'a>(more: &[&'a str]) -> Vec<&'a str> {
     let base = ["views", "path.toml", "cameras.json", "-o", "out", "--no-denoise"];
     // Small cells have records on small images, too.
-    let fast = [["--spp", "4"], ["--vpls", "2000"], ["--least-cell", "32"]];
+    let fast = [["--spp", "4"], ["--set", "vpls=2000"], ["--set", "least-cell=32"]];
     let own = fast.iter().filter(|option| !more.contains(&option[0])).flatten().copied();
     base.into_iter().chain(own).chain(more.iter().copied()).collect()
 }
@@ -124,7 +124,7 @@ fn views_are_images_of_their_cameras_named_after_the_files_of_the_list() {
     assert!(stats.len() == 5 && new(0) > 3 * new(4), "{} {}", new(0), new(4));
     assert!(stats[0]["counters"]["VPLs"].is_object() && stats[1]["counters"]["VPLs"].is_null());
     // The camera is that of the scene in the same place.
-    sandbox.run(&["render", "path.toml", "-o", "b.exr", "--spp", "1", "--vpls", "100"]).expect(0);
+    sandbox.run(&["render", "path.toml", "-o", "b.exr", "--spp", "1", "--set", "vpls=100"]).expect(0);
     let still = ExrFile::read(&sandbox.path("b.exr")).unwrap();
     let [a, b] = [exr(&sandbox, NAMES[0]).camera().unwrap(), still.camera().unwrap()];
     assert!(a.world_to_ndc.iter().zip(&b.world_to_ndc).all(|(a, b)| (a - b).abs() < 1e-5), "{a:?} {b:?}");
@@ -179,7 +179,7 @@ fn the_order_of_views_changes_their_noise_and_not_their_mean() {
     let sandbox = sandbox();
     let means = |views_in_order: &[(&str, [f64; 3], [f64; 3])]| {
         fs::write(sandbox.path("cameras.json"), transforms(views_in_order)).unwrap();
-        views(&sandbox, &["--no-png", "--spp", "64", "--vpls", "20000"]).expect(0);
+        views(&sandbox, &["--no-png", "--spp", "64", "--set", "vpls=20000"]).expect(0);
         ["train/r_0", "test/r_0", "up/r_3"].map(|name| colour(&sandbox, name))
     };
     let mut order = VIEWS[..4].to_vec();

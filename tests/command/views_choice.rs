@@ -34,7 +34,7 @@ fn an_open_method_is_chosen_once_for_the_whole_list_as_for_a_still() {
     assert!(choice(&part) == Some(chosen) && files(&sandbox) == ["test/r_0.exr", "test/r_0.png"]);
     assert!(method(chosen) != "path" || colour(&sandbox, NAMES[2]) == whole[2]);
     assert!(choice(&open(&["--dry-run"])) == Some(chosen));
-    for closed in [&["--method", "path", "--spp", "1"][..], &["--spp", "1", "--vpls", "100"]] {
+    for closed in [&["--method", "path", "--spp", "1"][..], &["--spp", "1", "--set", "vpls=100"]] {
         assert!(!open(closed).stderr.contains("Method:"), "{closed:?}");
     }
 }
@@ -51,7 +51,9 @@ fn options_without_effect_are_refused() {
             assert!(sandbox.run(&walk).expect(2).stderr.contains("the camera path"), "{option}");
         }
     }
-    for option in ["--q-scale=2", "--idle-frames=3", "--memory-limit=1G", "--no-reprojection"] {
+    for option in
+        ["--set=q-scale=2", "--set=idle-frames=3", "--set=memory-limit=1G", "--set=no-reprojection=on"]
+    {
         let walk = ["walk", "path.toml", "-o", "f.##.exr", "--frames", "1", "--method", "path", option];
         assert!(sandbox.run(&walk).expect(2).stderr.contains("has no effect with --method path"), "{option}");
     }

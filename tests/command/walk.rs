@@ -38,7 +38,7 @@ fn sandbox() -> Sandbox {
 }
 
 fn arguments<'a>(frames: &'a str, more: &[&'a str]) -> Vec<&'a str> {
-    let base = ["walk", "path.toml", "-o", "f/a.##.exr", "--vpls", "2000", "--no-denoise"];
+    let base = ["walk", "path.toml", "-o", "f/a.##.exr", "--set", "vpls=2000", "--no-denoise"];
     [&base, &["--frames", frames][..], more].concat()
 }
 
@@ -85,7 +85,7 @@ fn frames_are_whole_pictures_of_one_exposure_each_by_its_own_camera() {
     let file = ExrFile::read(&sandbox.path("f/a.01.exr")).unwrap();
     assert_eq!(file.metadata().number("png_exposure"), Some(-1.5));
     sandbox
-        .run(&["render", "path.toml", "-o", "b.exr", "--frame", "6", "--spp", "1", "--vpls", "100"])
+        .run(&["render", "path.toml", "-o", "b.exr", "--frame", "6", "--spp", "1", "--set", "vpls=100"])
         .expect(0);
     assert_eq!(ExrFile::read(&sandbox.path("b.exr")).unwrap().camera(), files[3].1.camera());
 }
@@ -106,7 +106,7 @@ fn single_frames_stand_in_the_place_for_the_number_with_all_their_files() {
     assert_eq!(frames(&sandbox), ["s.002.exr", "s.006.exr", "s.006.png", "shown.02.png"]);
     // A walk renders the same files, and a name with a place needs a number.
     sandbox
-        .run(&["walk", "path.toml", "-o", "f/s.###.exr", "--frames", "6", "--spp", "1", "--vpls", "99"])
+        .run(&["walk", "path.toml", "-o", "f/s.###.exr", "--frames", "6", "--spp", "1", "--set", "vpls=99"])
         .expect(0);
     assert_eq!(frames(&sandbox).len(), 4);
     let refused = render(&[]).expect(2).stderr;
@@ -207,13 +207,13 @@ fn wrong_names_ranges_and_scenes_are_errors_and_nothing_is_written() {
     assert!(error("a", &[], 2).contains("1-100x5"));
     let beyond = error("5-7", &[], 2);
     assert!(beyond.contains("no frame 7") && beyond.contains("has 6"), "{beyond}");
-    assert!(error("1", &["--memory-limit", "much"], 2).contains("512M"));
-    assert!(error("1", &["--memory-limit", "-1M"], 2).contains("512M"));
+    assert!(error("1", &["--set", "memory-limit=much"], 2).contains("512M"));
+    assert!(error("1", &["--set", "memory-limit=-1M"], 2).contains("512M"));
     for chunk in ["0", "-1", "x"] {
         assert!(error("1", &["--chunk", chunk], 2).contains("expected a whole number, 1 or more"));
     }
-    assert!(error("1", &["--q-scale", "-1"], 2).contains("from 0.01 to 1000"));
-    assert!(error("1", &["--denoise-quality", "fast"], 2).contains("needs --denoise"));
+    assert!(error("1", &["--set", "q-scale=-1"], 2).contains("from 0.01 to 1000"));
+    assert!(error("1", &["--set", "denoise-quality=fast"], 2).contains("needs --denoise"));
     assert!(error("1", &["--camera", "2"], 2).contains("no camera \"2\""));
     sandbox.run(&["info", "path.toml", "--camera", "1"]).expect(0);
     assert!(error("1", &["--time", "3s"], 2).contains("--time"));

@@ -37,7 +37,7 @@ fn compensation_makes_no_fireflies_in_creases() {
     assert!(ratio < 1.2, "{ratio}");
 }
 
-/// The layers of `--inspect` were written as PNG files by the cache alone, though the photon cache makes them too.
+/// The layers of `--set inspect=on` were PNG files of the cache alone, though the photon cache makes them too.
 #[test]
 fn every_method_with_records_returns_the_layers_of_inspection() {
     let world = own("cornell", 48);

@@ -142,6 +142,19 @@ impl Spec {
         self.key.replace('_', "-")
     }
 
+    /// Returns true for a setting of the paper or of tuning, which the option `--set` sets.
+    pub fn is_tuning(&self) -> bool {
+        !self.heading.is_empty()
+    }
+
+    /// Returns the words of the command line that set a value.
+    pub fn words(&self, value: &str) -> String {
+        match self.is_tuning() {
+            true => format!("--set {}={value}", self.option()),
+            false => format!("--{} {value}", self.option()),
+        }
+    }
+
     /// Returns the text for users.
     pub fn help(&self) -> String {
         first_paragraph(self.doc)
@@ -162,12 +175,21 @@ impl Spec {
             Err(_) if text.trim().parse().is_ok_and(|number: f64| number.is_finite() && !is_in(&number)) => {}
             Err(error) => return Err(error),
         }
-        Err(match (low, high) {
-            (f64::MIN_POSITIVE, f64::MAX) => "expected more than 0".to_owned(),
-            (f64::MIN, f64::MAX) => "expected a finite number".to_owned(),
-            (low, f64::MAX) => format!("expected at least {low}"),
-            (low, high) => format!("expected from {low} to {high}"),
+        Err(match (self.range_text(), (low, high)) {
+            (Some(range), (_, f64::MAX)) => format!("expected {range}"),
+            (Some(range), _) => format!("expected from {range}"),
+            (None, _) => "expected a finite number".to_owned(),
         })
+    }
+
+    /// Describes the range of the numbers; `None` if all are allowed.
+    pub fn range_text(&self) -> Option<String> {
+        match (self.range[0], self.range[1]) {
+            (f64::MIN, f64::MAX) => None,
+            (f64::MIN_POSITIVE, f64::MAX) => Some("more than 0".to_owned()),
+            (low, f64::MAX) => Some(format!("at least {low}")),
+            (low, high) => Some(format!("{low} to {high}")),
+        }
     }
 
     /// Sets a number of `value`, one of several if `part` is not 0, to the nearest in range.

@@ -76,7 +76,7 @@ impl Method {
         let mut options = Vec::new();
         self.visit(&mut |spec, value| {
             if let Some(place) = self.moves().iter().position(|moved| moved.key == spec.key) {
-                options.push((place, format!("--{} {}", spec.option(), value.text())));
+                options.push((place, spec.words(&value.text())));
             }
         });
         options.sort_by_key(|(place, _)| *place);

@@ -12,7 +12,7 @@ pub enum FrameError {
     /// The frame needs more memory than there is.
     #[error(
         "the image would take about {needed:.2} GiB, and {available:.2} GiB of memory are available: take fewer \
-         samples (--spp), virtual lights (--vpls, --direct-vpls) or photons (--photons), render the film in parts with \
+         samples (--spp), virtual lights (--set vpls, direct-vpls) or photons (--set photons), render the film in parts with \
          --crop, or use --method lightcuts"
     )]
     Memory {

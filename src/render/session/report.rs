@@ -32,7 +32,7 @@ pub(super) fn of_error(asked: f64, options: &str, missed: Option<Estimate>) -> V
         let [value, low, high] = [rms.value, rms.low, rms.high].map(|x| 100.0 * x);
         remarks.push(Remark::Warning(format!(
             "the error may be above {asked} %: {value:.2} % ({low:.2} to {high:.2}); more pixels (--verify) or \
-             paths (--verify-samples) narrow the interval"
+             paths (--set verify-samples) narrow the interval"
         )));
     }
     remarks
@@ -71,7 +71,7 @@ pub(super) fn of_measured(found: &Verified) -> Vec<Remark> {
     if is_wide(relative_rms) || is_wide(relative_bias) {
         let capped = 2 * found.pixels_at_cap > pixels;
         let more = if capped {
-            "more pixels (--verify) and paths (--verify-samples)"
+            "more pixels (--verify) and paths (--set verify-samples)"
         } else {
             "more pixels (--verify)"
         };
