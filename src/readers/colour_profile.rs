@@ -235,7 +235,7 @@ mod tests {
             });
             conversion(&of_chunks(&info).unwrap().unwrap()).unwrap().is_small()
         };
-        assert!(of_code(1, 13) && !of_code(12, 13) && !of_code(9, 16));
+        assert!(of_code(1, 13) && !of_code(12, 13) && !of_code(9, 13));
         let mut jpeg = Vec::new();
         let mut encoder = JpegEncoder::new(&mut jpeg);
         encoder.set_icc_profile(ColorProfile::new_display_p3().encode().unwrap()).unwrap();
