@@ -20,8 +20,8 @@ const LIGHTS: usize = 1000;
 
 fn run(context: &Context) -> Vec<Table> {
     let mut dice = Dice(5);
-    let sources: Vec<LocalVpl<f32>> = (0..LIGHTS).map(|_| source(&mut dice)).collect();
-    let incidences: Vec<Incidence<f32>> = sources.iter().filter_map(|s| s.incidence(1e-9)).collect();
+    let sources: Vec<LocalVpl> = (0..LIGHTS).map(|_| source(&mut dice)).collect();
+    let incidences: Vec<Incidence> = sources.iter().filter_map(|s| s.incidence(1e-9)).collect();
     let (incidences, lights) = (&incidences, incidences.len() as f64);
     let mut cases = vec![Case::new(&["geometry and gradient", ""], 0, LIGHTS as f64, || {
         sources.iter().for_each(|s| {
@@ -59,7 +59,7 @@ fn run(context: &Context) -> Vec<Table> {
 }
 
 /// Returns a random light above the receiver that roughly faces it.
-fn source(dice: &mut Dice) -> LocalVpl<f32> {
+fn source(dice: &mut Dice) -> LocalVpl {
     let mut part = || dice.unit();
     let offset = Vec3::new(part() - 0.5, part() - 0.5, part());
     let normal = (Vec3::new(part() - 0.5, part() - 0.5, part() - 0.5) - offset).normalize();

@@ -7,7 +7,6 @@ mod lane;
 mod lanes;
 mod placement;
 mod quadrature;
-mod real;
 mod unit;
 mod vector;
 
@@ -17,7 +16,6 @@ pub use lane::{Lane, Mask, Mask16, f32x16};
 pub use lanes::{F32x16, LANES, U32x16, Vec2x16, Vec3x16, first_lanes, lanes_in, lanes_with, mask_of};
 pub use placement::Placement;
 pub use quadrature::gauss_legendre;
-pub use real::{Real, WIDTH, f32x8};
 pub use unit::{right_of, unflattened, unit};
 pub use vector::V3;
 

@@ -20,4 +20,4 @@ pub use incidence::Incidence;
 pub use source::LocalVpl;
 
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;

@@ -5,10 +5,10 @@ use crate::lights::{LobeProfile, SpotProfile};
 use base::math::Frame;
 use glam::Vec3;
 
-impl Incidence<f32> {
+impl Incidence {
     /// Applies the spot profile; `None` outside the cone.
     #[inline]
-    pub(super) fn through_spot(self, frame: &Frame, spot: &SpotProfile) -> Option<Incidence<f32>> {
+    pub(super) fn through_spot(self, frame: &Frame, spot: &SpotProfile) -> Option<Incidence> {
         let away = -Vec3::from(self.direction);
         let share = spot.falloff(frame.to_world(away));
         if share <= 0.0 {
@@ -33,7 +33,7 @@ impl Incidence<f32> {
 
     /// Applies a lobe; `None` if it sends no light in this direction.
     #[inline]
-    pub(super) fn through_lobe(self, frame: &Frame, lobe: &LobeProfile) -> Option<Incidence<f32>> {
+    pub(super) fn through_lobe(self, frame: &Frame, lobe: &LobeProfile) -> Option<Incidence> {
         let (share, slope) = lobe.share_and_slope(frame.to_world(-Vec3::from(self.direction)));
         let slope = frame.to_local(slope);
         let along = |axis: usize| -slope.dot(Vec3::from(self.turning(axis)));

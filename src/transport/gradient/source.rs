@@ -4,59 +4,58 @@
 
 use super::incidence::Incidence;
 use crate::lights::{Profiles, Vpl, VplKind};
-use base::math::{Frame, Real};
+use base::math::Frame;
 use glam::Vec3;
 
 /// A virtual light in the receiver's frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum LocalVpl<T> {
+pub enum LocalVpl {
     /// A light whose intensity is proportional to the cosine to its normal.
     Oriented {
         /// Offset from the receiver.
-        offset: [T; 3],
+        offset: [f32; 3],
         /// Unit normal.
-        normal: [T; 3],
+        normal: [f32; 3],
     },
     /// A light of equal intensity in all directions.
     Omni {
         /// Offset from the receiver.
-        offset: [T; 3],
+        offset: [f32; 3],
     },
     /// A light at infinite distance.
     Directional {
         /// Unit direction to the light.
-        towards: [T; 3],
+        towards: [f32; 3],
     },
 }
 
 /// Direction, inverse distance and emitter's cosine of a light at a finite distance.
-struct Connection<T> {
-    omega: [T; 3],
-    inverse: T,
+struct Connection {
+    omega: [f32; 3],
+    inverse: f32,
     /// Cosine at the emitter; 1 for omni lights.
-    cos: T,
+    cos: f32,
     /// Tangential part of the derivative of `cos` by the offset, at unit distance: that of the normal; 0 for omni
     /// lights.
-    normal: [T; 2],
+    normal: [f32; 2],
     /// True if the distance is below the minimum.
     too_near: bool,
 }
 
-impl<T: Real + PartialOrd> LocalVpl<T> {
+impl LocalVpl {
     /// Returns the arriving light with its first derivatives; `None` at the light itself and behind it.
     ///
     /// Smaller distances are clamped to `min_dist_sq`, and then the light is constant.
     #[inline]
-    pub fn incidence(&self, min_dist_sq: T) -> Option<Incidence<T>> {
-        let zero = T::of(0.0);
+    pub fn incidence(&self, min_dist_sq: f32) -> Option<Incidence> {
         let LocalVpl::Directional { towards } = *self else {
             let Connection { omega, inverse, cos, normal, too_near } = self.sight(min_dist_sq)?;
             if too_near {
                 let factor = cos / min_dist_sq;
-                return Some(Incidence { direction: omega, inv_dist: zero, factor, gradient: [zero; 2] });
+                return Some(Incidence { direction: omega, inv_dist: 0.0, factor, gradient: [0.0; 2] });
             }
             // The falloff is r⁻². The cosine of oriented lights adds one power.
-            let power = if self.is_oriented() { T::of(3.0) } else { T::of(2.0) };
+            let power = if self.is_oriented() { 3.0 } else { 2.0 };
             let square = inverse * inverse;
             let slope = |axis: usize| square * inverse * (normal[axis] + power * cos * omega[axis]);
             return Some(Incidence {
@@ -66,30 +65,29 @@ impl<T: Real + PartialOrd> LocalVpl<T> {
                 gradient: [slope(0), slope(1)],
             });
         };
-        Some(Incidence { direction: towards, inv_dist: zero, factor: T::of(1.0), gradient: [zero; 2] })
+        Some(Incidence { direction: towards, inv_dist: 0.0, factor: 1.0, gradient: [0.0; 2] })
     }
 
     /// Returns the second derivatives uu, uv and vv of the irradiance.
     #[inline]
-    pub fn irradiance_hessian(&self, min_dist_sq: T) -> [T; 3] {
-        let none = [T::of(0.0); 3];
+    pub fn irradiance_hessian(&self, min_dist_sq: f32) -> [f32; 3] {
         let Some(Connection { omega: [x, y, z], inverse, cos, normal: [n_u, n_v], too_near }) =
             self.sight(min_dist_sq)
         else {
-            return none;
+            return [0.0; 3];
         };
-        if too_near || !(z > T::of(0.0)) {
-            return none;
+        if too_near || !(z > 0.0) {
+            return [0.0; 3];
         }
         // At constant height, the irradiance falls off with 3 powers of the distance. The cosine adds one.
         let (same, crossed) = if self.is_oriented() { (4.0, 24.0) } else { (3.0, 15.0) };
-        let (same, crossed, four) = (T::of(same), T::of(crossed) * cos, T::of(4.0));
+        let crossed = crossed * cos;
         let square = inverse * inverse;
         let scale = square * square * z;
         [
-            scale * (four * (n_u * x + n_u * x) + crossed * x * x - same * cos),
-            scale * (four * (n_u * y + n_v * x) + crossed * x * y),
-            scale * (four * (n_v * y + n_v * y) + crossed * y * y - same * cos),
+            scale * (4.0 * (n_u * x + n_u * x) + crossed * x * x - same * cos),
+            scale * (4.0 * (n_u * y + n_v * x) + crossed * x * y),
+            scale * (4.0 * (n_v * y + n_v * y) + crossed * y * y - same * cos),
         ]
     }
 
@@ -98,31 +96,28 @@ impl<T: Real + PartialOrd> LocalVpl<T> {
     }
 
     #[inline]
-    fn sight(&self, min_dist_sq: T) -> Option<Connection<T>> {
-        let dot = |a: [T; 3], b: [T; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-        let zero = T::of(0.0);
+    fn sight(&self, min_dist_sq: f32) -> Option<Connection> {
+        let dot = |a: [f32; 3], b: [f32; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
         let (offset, normal) = match *self {
             LocalVpl::Oriented { offset, normal } => (offset, normal),
-            LocalVpl::Omni { offset } => (offset, [zero; 3]),
+            LocalVpl::Omni { offset } => (offset, [0.0; 3]),
             LocalVpl::Directional { .. } => return None,
         };
         let dist_sq = dot(offset, offset);
-        if !(dist_sq > zero) {
+        if !(dist_sq > 0.0) {
             return None;
         }
-        let inverse = T::of(1.0) / dist_sq.sqrt();
+        let inverse = 1.0 / dist_sq.sqrt();
         let omega = [offset[0] * inverse, offset[1] * inverse, offset[2] * inverse];
-        let cos = if self.is_oriented() { -dot(normal, omega) } else { T::of(1.0) };
+        let cos = if self.is_oriented() { -dot(normal, omega) } else { 1.0 };
         let too_near = dist_sq < min_dist_sq;
-        (cos > zero).then_some(Connection { omega, inverse, cos, normal: [normal[0], normal[1]], too_near })
+        (cos > 0.0).then_some(Connection { omega, inverse, cos, normal: [normal[0], normal[1]], too_near })
     }
-}
 
-impl LocalVpl<f32> {
     /// Transforms a virtual light to the frame `frame` at `position`, without its profile, which [`Incidence::of_vpl`]
     /// applies.
     #[inline]
-    pub fn of_vpl(frame: &Frame, position: Vec3, vpl: &Vpl, kind: VplKind) -> LocalVpl<f32> {
+    pub fn of_vpl(frame: &Frame, position: Vec3, vpl: &Vpl, kind: VplKind) -> LocalVpl {
         let local = |v: Vec3| frame.to_local(v).to_array();
         match kind {
             VplKind::Oriented => {
@@ -134,7 +129,7 @@ impl LocalVpl<f32> {
     }
 }
 
-impl Incidence<f32> {
+impl Incidence {
     /// Computes the light that arrives from a virtual light at `position` in `frame`, with its profile from `profiles`.
     #[inline]
     pub fn of_vpl(
@@ -144,7 +139,7 @@ impl Incidence<f32> {
         kind: VplKind,
         profiles: &Profiles,
         min_dist_sq: f32,
-    ) -> Option<Incidence<f32>> {
+    ) -> Option<Incidence> {
         let incidence = LocalVpl::of_vpl(frame, position, vpl, kind).incidence(min_dist_sq)?;
         match vpl.spot_profile() {
             Some(profile) if kind == VplKind::Omni => incidence.through_spot(frame, &profiles.spots[profile]),

@@ -1,4 +1,4 @@
-//! Sum of the light of many directions as coefficients, eight directions at a time.
+//! Sum of the light of many directions as coefficients, sixteen directions at a time.
 //!
 //! Paper: Herzog et al. 2009, equations 5 and 6.
 //! Deviations: the receiver's cosine is part of the reflection, not of the light, so the series represents radiance.
@@ -7,36 +7,36 @@
 use super::basis::{CHANNELS, MAX_BANDS, MAX_FUNCTIONS, for_each};
 use super::radiance::{BLOCKS, Radiance};
 use crate::gradient::Incidence;
-use base::math::{Rgb, WIDTH, f32x8};
+use base::math::{LANES, Rgb, f32x16};
 
 /// Coefficients under construction. Rounding depends on the order in which light is added, so callers must add it in a
 /// fixed order.
 pub struct Accumulator {
     bands: usize,
-    batch: Incidence8,
+    batch: IncidentLanes,
     /// Number of the batch's lanes in use.
     filled: usize,
     /// Value and derivatives along u and v by function, three channels each. Lanes are summed at the end.
-    sums: Box<[[f32x8; BLOCKS]; MAX_FUNCTIONS]>,
+    sums: Box<[[f32x16; BLOCKS]; MAX_FUNCTIONS]>,
 }
 
-/// Light from eight directions.
+/// Light from sixteen directions.
 #[derive(Clone, Copy)]
-struct Incidence8 {
-    direction: [f32x8; 3],
-    inv_dist: f32x8,
-    factor: f32x8,
-    gradient: [f32x8; 2],
-    intensity: [f32x8; CHANNELS],
+struct IncidentLanes {
+    direction: [f32x16; 3],
+    inv_dist: f32x16,
+    factor: f32x16,
+    gradient: [f32x16; 2],
+    intensity: [f32x16; CHANNELS],
 }
 
-impl Incidence8 {
-    const EMPTY: Incidence8 = Incidence8 {
-        direction: [f32x8::ZERO; 3],
-        inv_dist: f32x8::ZERO,
-        factor: f32x8::ZERO,
-        gradient: [f32x8::ZERO; 2],
-        intensity: [f32x8::ZERO; CHANNELS],
+impl IncidentLanes {
+    const EMPTY: IncidentLanes = IncidentLanes {
+        direction: [f32x16::ZERO; 3],
+        inv_dist: f32x16::ZERO,
+        factor: f32x16::ZERO,
+        gradient: [f32x16::ZERO; 2],
+        intensity: [f32x16::ZERO; CHANNELS],
     };
 }
 
@@ -44,20 +44,20 @@ impl Accumulator {
     /// Creates an accumulator for series of `bands` bands, which is clamped to 1 to 8.
     pub fn new(bands: usize) -> Accumulator {
         let bands = bands.clamp(1, MAX_BANDS);
-        let sums = Box::new([[f32x8::ZERO; BLOCKS]; MAX_FUNCTIONS]);
-        Accumulator { bands, batch: Incidence8::EMPTY, filled: 0, sums }
+        let sums = Box::new([[f32x16::ZERO; BLOCKS]; MAX_FUNCTIONS]);
+        Accumulator { bands, batch: IncidentLanes::EMPTY, filled: 0, sums }
     }
 
     /// Resets the accumulator to a number of bands.
     pub fn reset(&mut self, bands: usize) {
         self.bands = bands.clamp(1, MAX_BANDS);
-        self.sums.fill([f32x8::ZERO; BLOCKS]);
-        (self.batch, self.filled) = (Incidence8::EMPTY, 0);
+        self.sums.fill([f32x16::ZERO; BLOCKS]);
+        (self.batch, self.filled) = (IncidentLanes::EMPTY, 0);
     }
 
     /// Adds the light of one direction; light from below the horizon is ignored.
     #[inline]
-    pub fn add(&mut self, incidence: &Incidence<f32>, intensity: Rgb) {
+    pub fn add(&mut self, incidence: &Incidence, intensity: Rgb) {
         if !(incidence.direction[2] > 0.0) {
             return;
         }
@@ -71,7 +71,7 @@ impl Accumulator {
         batch.gradient[0].as_mut_array()[lane] = incidence.gradient[0];
         batch.gradient[1].as_mut_array()[lane] = incidence.gradient[1];
         self.filled += 1;
-        if self.filled == WIDTH {
+        if self.filled == LANES {
             self.flush();
         }
     }
@@ -86,7 +86,7 @@ impl Accumulator {
             for (block, sum) in sums.iter().enumerate() {
                 radiance.set(block, k, sum.reduce_add());
             }
-            *sums = [f32x8::ZERO; BLOCKS];
+            *sums = [f32x16::ZERO; BLOCKS];
         }
         radiance
     }
@@ -102,15 +102,16 @@ impl Accumulator {
             7 => self.add_batch::<7>(),
             _ => self.add_batch::<8>(),
         }
-        (self.batch, self.filled) = (Incidence8::EMPTY, 0);
+        (self.batch, self.filled) = (IncidentLanes::EMPTY, 0);
     }
 
     #[inline(never)]
     fn add_batch<const BANDS: usize>(&mut self) {
-        let Incidence8 { direction, inv_dist, factor, gradient: [slope_u, slope_v], intensity } = self.batch;
+        let IncidentLanes { direction, inv_dist, factor, gradient: [slope_u, slope_v], intensity } =
+            self.batch;
         let turning = factor * inv_dist;
         let sums = &mut self.sums;
-        for_each::<f32x8, BANDS>(direction, |k, h, h_u, h_v| {
+        for_each::<f32x16, BANDS>(direction, |k, h, h_u, h_v| {
             let (u, v) = (slope_u * h + turning * h_u, slope_v * h + turning * h_v);
             let value = factor * h;
             let sums = &mut sums[k];

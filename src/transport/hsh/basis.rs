@@ -12,7 +12,7 @@
 //! Deviations: the paper uses angles, which are singular at the pole and, differentiated, at the horizon. Here the
 //! functions are polynomials in x and y, which are finite everywhere with their derivatives.
 
-use base::math::Real;
+use base::math::Lane;
 use std::f64::consts::PI;
 
 /// Number of colour channels.
@@ -98,43 +98,43 @@ const fn sqrt(x: f64) -> f64 {
 /// Directions slightly below the horizon, which rounding produces, are moved to it. The compiler removes arguments that
 /// `f` does not use.
 #[inline(always)]
-pub fn for_each<T: Real, const BANDS: usize>(omega: [T; 3], mut f: impl FnMut(usize, T, T, T)) {
+pub fn for_each<L: Lane, const BANDS: usize>(omega: [L; 3], mut f: impl FnMut(usize, L, L, L)) {
     const { assert!(BANDS >= 1 && BANDS <= MAX_BANDS) };
     let [x, y, z] = omega;
-    let z = z.max(T::of(0.0));
-    let above = T::of(1.0) + z;
-    let sigma = (T::of(4.0) * z / above).sqrt();
+    let z = z.positive();
+    let above = L::from(1.0) + z;
+    let sigma = (L::from(4.0) * z / above).sqrt();
     let (scaled_x, scaled_y) = (sigma * x, sigma * y);
     // (σ(x + iy))^m
-    let mut power = [(T::of(1.0), T::of(0.0)); MAX_BANDS];
+    let mut power = [(L::from(1.0), L::from(0.0)); MAX_BANDS];
     for m in 1..BANDS {
         let (re, im) = power[m - 1];
         power[m] = (scaled_x * re - scaled_y * im, scaled_x * im + scaled_y * re);
     }
-    let t = z + z - T::of(1.0);
-    let half_inverse = T::of(0.5) / above;
-    let mut next_order = [T::of(0.0); MAX_BANDS];
+    let t = z + z - L::from(1.0);
+    let half_inverse = L::from(0.5) / above;
+    let mut next_order = [L::from(0.0); MAX_BANDS];
     for m in (0..BANDS).rev() {
-        let order = T::of(m as f64);
+        let order = L::from(m as f32);
         let (re, im) = power[m];
         // σᵐ times the derivatives of (x + iy)^m by x
         let (re_x, im_x) = match m {
-            0 => (T::of(0.0), T::of(0.0)),
+            0 => (L::from(0.0), L::from(0.0)),
             _ => (order * sigma * power[m - 1].0, order * sigma * power[m - 1].1),
         };
         let scaling = order + order * half_inverse;
-        let mut column = [T::of(0.0); MAX_BANDS];
+        let mut column = [L::from(0.0); MAX_BANDS];
         for l in m..BANDS {
             let q = match l - m {
-                0 => T::of(RECURRENCE.start[m]),
-                1 => T::of(RECURRENCE.first[l][m]) * (t * column[l - 1]),
+                0 => L::from(RECURRENCE.start[m] as f32),
+                1 => L::from(RECURRENCE.first[l][m] as f32) * (t * column[l - 1]),
                 _ => {
-                    T::of(RECURRENCE.first[l][m]) * (t * column[l - 1])
-                        - T::of(RECURRENCE.second[l][m]) * column[l - 2]
+                    L::from(RECURRENCE.first[l][m] as f32) * (t * column[l - 1])
+                        - L::from(RECURRENCE.second[l][m] as f32) * column[l - 2]
                 }
             };
             column[l] = q;
-            let slope = T::of(RECURRENCE.derivative[l][m]) * next_order[l];
+            let slope = L::from(RECURRENCE.derivative[l][m] as f32) * next_order[l];
             let radial = scaling * q + (z + z) * slope;
             // The derivatives by y are the exchanged derivatives by x (Cauchy-Riemann equations).
             let (along, across) = (re * radial, im * radial);
@@ -148,9 +148,9 @@ pub fn for_each<T: Real, const BANDS: usize>(omega: [T; 3], mut f: impl FnMut(us
 }
 
 /// Evaluates the first `bands`² functions at ω, `bands` in 1..=8; other values are 0.
-pub fn evaluate<T: Real>(bands: usize, omega: [T; 3]) -> [T; MAX_FUNCTIONS] {
-    let mut values = [T::of(0.0); MAX_FUNCTIONS];
-    for_each::<T, MAX_BANDS>(omega, |k, h, _, _| values[k] = h);
-    values[bands.min(MAX_BANDS).pow(2)..].fill(T::of(0.0));
+pub fn evaluate(bands: usize, omega: [f32; 3]) -> [f32; MAX_FUNCTIONS] {
+    let mut values = [0.0; MAX_FUNCTIONS];
+    for_each::<f32, MAX_BANDS>(omega, |k, h, _, _| values[k] = h);
+    values[bands.min(MAX_BANDS).pow(2)..].fill(0.0);
     values
 }

@@ -90,11 +90,11 @@ impl Quadrature {
         let ring = |(s, weight): (f64, f64)| {
             let z = s * s;
             let sin = ((1.0 - z) * (1.0 + z)).sqrt();
-            let values = evaluate(MAX_BANDS, [sin, 0.0, z]);
+            let values = evaluate(MAX_BANDS, [sin as f32, 0.0, z as f32]);
             let mut even = [0.0; MAX_EVEN];
             for l in 0..MAX_BANDS {
                 for m in 0..=l {
-                    even[even_index(l, m)] = values[index(l, m as isize)];
+                    even[even_index(l, m)] = f64::from(values[index(l, m as isize)]);
                 }
             }
             Ring { z, sin, weight: 2.0 * s * weight, even }

@@ -6,7 +6,7 @@
 use super::basis::index;
 use super::basis::{CHANNELS, MAX_BANDS, MAX_FUNCTIONS};
 use super::kernel::Kernel;
-use base::math::{Rgb, WIDTH, f32x8};
+use base::math::{LANES, Rgb, f32x16};
 use serde::{Deserialize, Serialize};
 
 /// Number of blocks: value and two derivatives, each by channel.
@@ -43,7 +43,7 @@ impl Reflected {
 /// Number of floats in a block.
 #[inline]
 pub(super) const fn stride(bands: usize) -> usize {
-    (bands * bands).next_multiple_of(WIDTH)
+    (bands * bands).next_multiple_of(LANES)
 }
 
 impl Radiance {
@@ -159,9 +159,9 @@ impl Radiance {
 /// Sum of products of two rows whose length is a multiple of the vectors' width.
 #[inline]
 fn dot(a: &[f32], b: &[f32]) -> f32 {
-    let mut sum = f32x8::ZERO;
-    for (a, b) in a.as_chunks::<WIDTH>().0.iter().zip(b.as_chunks::<WIDTH>().0) {
-        sum += f32x8::new(*a) * f32x8::new(*b);
+    let mut sum = f32x16::ZERO;
+    for (a, b) in a.as_chunks::<LANES>().0.iter().zip(b.as_chunks::<LANES>().0) {
+        sum += f32x16::new(*a) * f32x16::new(*b);
     }
     sum.reduce_add()
 }

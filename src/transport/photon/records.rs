@@ -176,7 +176,7 @@ impl GatherWorkspace {
 
 /// Returns the light of unit radiance from a patch of surface seen under a solid angle, and its derivatives as the
 /// point moves.
-fn patch(direction: Vec3, nearness: f32, normal: Vec3, solid_angle: f32) -> Incidence<f32> {
+fn patch(direction: Vec3, nearness: f32, normal: Vec3, solid_angle: f32) -> Incidence {
     let cos = -direction.dot(normal);
     let slope = match nearness > 0.0 {
         true => (direction * 3.0 + normal / cos.max(MIN_COS)) * (nearness * solid_angle),

@@ -50,7 +50,7 @@ impl SeriesGatherer {
 
     /// Adds light to a layer, in the tangent frame of the record.
     #[inline]
-    pub fn add_incidence(&mut self, origin: Origin, incidence: &Incidence<f32>, intensity: Rgb) {
+    pub fn add_incidence(&mut self, origin: Origin, incidence: &Incidence, intensity: Rgb) {
         if let (Some(_), Some(sums)) = (self.place, &mut self.sums) {
             sums[origin].add(incidence, intensity);
         }

@@ -1,8 +1,7 @@
 //! The basis against its defining properties: orthonormality, the formula in angles, finite differences.
 
 use crate::hsh::basis::*;
-use base::math::{Real, f32x8, gauss_legendre};
-use std::array::from_fn;
+use base::math::{Lane, f32x16, gauss_legendre};
 use std::f64::consts::TAU;
 
 /// Unit directions of the whole hemisphere: a grid, and the neighbourhoods of the horizon and of the pole.
@@ -56,21 +55,19 @@ fn printed_formula(l: usize, m: isize, [x, y, z]: [f64; 3]) -> f64 {
     norm * polynomial * sine * azimuthal
 }
 
-#[test]
-fn values_are_those_of_the_printed_formula() {
-    for omega in directions() {
-        let values = evaluate(MAX_BANDS, omega);
-        for l in 0..MAX_BANDS {
-            for m in -(l as isize)..=l as isize {
-                let (value, expected) = (values[index(l, m)], printed_formula(l, m, omega));
-                assert!((value - expected).abs() < 1e-11, "{l} {m} {omega:?}: {value} {expected}");
-            }
+/// All functions by the printed formula.
+pub(super) fn printed_functions(omega: [f64; 3]) -> [f64; MAX_FUNCTIONS] {
+    let mut values = [0.0; MAX_FUNCTIONS];
+    for l in 0..MAX_BANDS {
+        for m in -(l as isize)..=l as isize {
+            values[index(l, m)] = printed_formula(l, m, omega);
         }
     }
+    values
 }
 
-/// Largest deviation of the Gram matrix from the identity, the functions evaluated in `T`.
-fn gram_error<T: Real>(back: impl Fn(T) -> f64) -> f64 {
+#[test]
+fn the_basis_is_orthonormal() {
     // In cos θ = s² the integrands are polynomials, of degree 4 · 7 + 1; in φ trigonometric ones of order 14.
     let around = 32;
     let mut gram = vec![0.0f64; MAX_FUNCTIONS * MAX_FUNCTIONS];
@@ -79,7 +76,7 @@ fn gram_error<T: Real>(back: impl Fn(T) -> f64) -> f64 {
         let r = (1.0 - z * z).sqrt();
         for j in 0..around {
             let (sin, cos) = (f64::from(j) * TAU / f64::from(around)).sin_cos();
-            let values = evaluate(MAX_BANDS, [T::of(r * cos), T::of(r * sin), T::of(z)]).map(&back);
+            let values = evaluate(MAX_BANDS, [r * cos, r * sin, z].map(|c| c as f32)).map(f64::from);
             let weight = weight * 2.0 * s * TAU / f64::from(around);
             for (i, a) in values.iter().enumerate() {
                 for (j, b) in values.iter().enumerate() {
@@ -89,14 +86,8 @@ fn gram_error<T: Real>(back: impl Fn(T) -> f64) -> f64 {
         }
     }
     let identity = |i: usize| f64::from(u8::from(i.is_multiple_of(MAX_FUNCTIONS + 1)));
-    gram.iter().enumerate().map(|(i, g)| (g - identity(i)).abs()).fold(0.0, f64::max)
-}
-
-#[test]
-fn the_basis_is_orthonormal() {
-    let (double, single) = (gram_error::<f64>(|h| h), gram_error::<f32>(f64::from));
-    assert!(double < 1e-12, "{double:e}");
-    assert!(single < 2e-6, "{single:e}");
+    let error = gram.iter().enumerate().map(|(i, g)| (g - identity(i)).abs()).fold(0.0, f64::max);
+    assert!(error < 2e-6, "{error:e}");
 }
 
 #[test]
@@ -109,62 +100,65 @@ fn fewer_bands_are_the_first_of_them() {
         assert!(some[bands * bands..].iter().all(|h| *h == 0.0));
     }
     let mut five = [0.0; 25];
-    for_each::<f64, 5>(omega, |k, h, _, _| five[k] = h);
+    for_each::<f32, 5>(omega, |k, h, _, _| five[k] = h);
     assert_eq!(five, all[..25]);
 }
 
 /// Values, and derivatives along u and v, for a source at distance 1.
-fn with_derivatives<T: Real>(omega: [T; 3]) -> [[T; 3]; MAX_FUNCTIONS] {
-    let mut all = [[T::of(f64::NAN); 3]; MAX_FUNCTIONS];
-    for_each::<T, MAX_BANDS>(omega, |k, h, u, v| all[k] = [h, u, v]);
+fn with_derivatives<L: Lane>(omega: [L; 3]) -> [[L; 3]; MAX_FUNCTIONS] {
+    let mut all = [[L::from(f32::NAN); 3]; MAX_FUNCTIONS];
+    for_each::<L, MAX_BANDS>(omega, |k, h, u, v| all[k] = [h, u, v]);
     all
 }
 
 #[test]
-fn derivatives_agree_with_finite_differences() {
-    // Fourth order in the step, so that rounding and truncation both stay below 1e-9.
+fn values_and_derivatives_are_those_of_the_printed_formula() {
+    // Fourth order in the step, so that rounding and truncation both stay below 1e-7.
     let step = 2e-4;
+    let (mut value, mut derivative) = (0.0f64, 0.0f64);
     for omega in directions() {
-        let exact = with_derivatives(omega);
+        // Rounded first, so that only the arithmetic differs.
+        let single = omega.map(|c| c as f32);
+        let omega = single.map(f64::from);
+        let length = |v: [f64; 3]| v.iter().map(|c| c * c).sum::<f64>().sqrt();
+        let found = with_derivatives(single);
+        let exact = printed_functions(omega);
+        for k in 0..MAX_FUNCTIONS {
+            value = value.max((f64::from(found[k][0]) - exact[k]).abs());
+        }
+        // The printed formula has a root that is singular at the horizon.
+        if omega[2] < 0.01 {
+            continue;
+        }
         for axis in 0..2 {
             let moved = |by: f64| {
                 let mut q = omega;
                 q[axis] -= by * step; // the receiver moves one way, the source appears to move the other
-                let length = q.iter().map(|c| c * c).sum::<f64>().sqrt();
-                evaluate(MAX_BANDS, q.map(|c| c / length))
+                let length = length(q);
+                printed_functions(q.map(|c| c / length))
             };
             let samples = [moved(-2.0), moved(-1.0), moved(1.0), moved(2.0)];
             for k in 0..MAX_FUNCTIONS {
                 let [a, b, c, d] = [0, 1, 2, 3].map(|i: usize| samples[i][k]);
                 let difference = (a - 8.0 * b + 8.0 * c - d) / (12.0 * step);
-                let derivative = exact[k][1 + axis];
-                let error = (derivative - difference).abs() / derivative.abs().max(0.1);
-                assert!(error < 1e-6, "{k} {axis} {omega:?}: {derivative} {difference} {error:e}");
+                derivative = derivative.max((f64::from(found[k][1 + axis]) - difference).abs());
             }
         }
     }
+    // Values reach 1.6, derivatives 60.
+    assert!(value < 4e-6 && derivative < 1e-5, "{value:e} {derivative:e}");
 }
 
 #[test]
-fn single_precision_errs_by_little_and_side_by_side_it_is_the_same() {
-    let mut error = [0.0f64; 2];
+fn sixteen_directions_have_the_values_of_each() {
     for omega in directions() {
-        // Rounded first, so that only the arithmetic differs.
         let single = omega.map(|c| c as f32);
-        let rounded = single.map(f64::from);
-        let (exact, values) = (with_derivatives(rounded), with_derivatives(single));
-        let lanes = with_derivatives(single.map(|c| f32x8::new(from_fn(|i| if i == 3 { c } else { 0.5 }))));
+        let values = with_derivatives(single);
+        let lanes = with_derivatives(single.map(|c| f32x16::from_fn(|i| if i == 3 { c } else { 0.5 })));
         for k in 0..MAX_FUNCTIONS {
-            for part in 0..3 {
-                let e = (f64::from(values[k][part]) - exact[k][part]).abs();
-                error[usize::from(part > 0)] = e.max(error[usize::from(part > 0)]);
-                assert_eq!(lanes[k][part].as_array()[3], values[k][part]);
-            }
+            assert_eq!(lanes[k].map(|part| part.lane(3)), values[k]);
         }
     }
-    let [value, derivative] = error;
-    // Values reach 1.6, derivatives 60.
-    assert!(value < 4e-6 && derivative < 1e-5, "{value:e} {derivative:e}");
 }
 
 #[test]

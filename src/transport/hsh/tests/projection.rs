@@ -149,7 +149,9 @@ fn kernels_are_projections_from_any_azimuth() {
             for (wi, solid_angle) in &directions {
                 let value = bsdf.eval(wo.as_vec3(), wi.as_vec3()).as_dvec3() * wi.z;
                 norm_sq += value * value * *solid_angle;
-                for (sum, h) in expected.iter_mut().zip(evaluate(MAX_BANDS, wi.to_array())) {
+                for (sum, h) in
+                    expected.iter_mut().zip(evaluate(MAX_BANDS, wi.as_vec3().to_array()).map(f64::from))
+                {
                     *sum += value * *solid_angle * h;
                 }
             }
@@ -198,7 +200,7 @@ fn interpolation_keeps_its_tolerance_everywhere() {
 }
 
 /// Light of unit intensity from a direction.
-fn from(direction: DVec3) -> Incidence<f32> {
+fn from(direction: DVec3) -> Incidence {
     LocalVpl::Directional { towards: direction.as_vec3().to_array() }.incidence(0.0).unwrap()
 }
 
@@ -208,7 +210,10 @@ fn smooth_light_is_reflected_within_the_product_of_what_both_series_leave_out() 
     let materials = Materials::new(&scene);
     let surfaces = MaterialSeries::new(&materials, &SeriesSettings::default());
     let directions = hemisphere();
-    let values: Vec<_> = directions.iter().map(|(wi, _)| evaluate(MAX_BANDS, wi.to_array())).collect();
+    let values: Vec<_> = directions
+        .iter()
+        .map(|(wi, _)| evaluate(MAX_BANDS, wi.as_vec3().to_array()).map(f64::from))
+        .collect();
     let sun = outgoing(0.9, 0.4);
     // Uniform light, two lobes of light, and light that grows towards the horizon.
     let environments: [&dyn Fn(DVec3) -> f64; 4] =

@@ -1,7 +1,9 @@
 //! Coefficients against sums in double precision, finite differences, and rotation of the light summed.
 
 use super::Random;
-use crate::gradient::LocalVpl;
+use super::basis::printed_functions;
+use crate::gradient::tests::Exact;
+use crate::gradient::{Incidence, LocalVpl};
 use crate::hsh::basis::*;
 use crate::hsh::kernel::Profile;
 use crate::hsh::*;
@@ -9,53 +11,43 @@ use base::math::Rgb;
 use glam::DVec3;
 
 /// Patches around the receiver, some below its horizon, with their intensities.
-fn lights(count: usize) -> Vec<(LocalVpl<f64>, Rgb)> {
+fn lights(count: usize) -> Vec<(Exact, Rgb)> {
     let mut random = Random(5);
     let mut light = |i: usize| {
         let direction = random.hemisphere();
-        let mut offset = direction * (0.5 + 2.0 * random.next());
+        let distance = if i % 5 == 1 { FAR } else { 0.5 + 2.0 * random.next() };
+        let mut offset = direction * distance;
         if i % 9 == 8 {
             offset.z = -offset.z;
         }
         let normal = (random.hemisphere() - 2.0 * direction).normalize();
         let intensity = Rgb::new(random.next() as f32, random.next() as f32, random.next() as f32);
-        let source = match i % 5 {
-            0 => LocalVpl::Omni { offset: offset.to_array() },
-            1 => LocalVpl::Directional { towards: direction.to_array() },
-            _ => LocalVpl::Oriented { offset: offset.to_array(), normal: normal.to_array() },
-        };
-        (source, intensity)
+        (Exact { offset, normal: (i % 5 > 1).then_some(normal) }, intensity)
     };
     (0..count).map(&mut light).collect()
 }
 
-/// Applies `f` to every offset, direction and normal.
-fn mapped(source: &LocalVpl<f64>, offset_by: DVec3, f: impl Fn(DVec3) -> DVec3) -> LocalVpl<f64> {
-    let apply = |v: [f64; 3], by: DVec3| f(DVec3::from(v) + by).to_array();
-    match *source {
-        LocalVpl::Oriented { offset, normal } => {
-            LocalVpl::Oriented { offset: apply(offset, offset_by), normal: apply(normal, DVec3::ZERO) }
-        }
-        LocalVpl::Omni { offset } => LocalVpl::Omni { offset: apply(offset, offset_by) },
-        LocalVpl::Directional { towards } => LocalVpl::Directional { towards: apply(towards, DVec3::ZERO) },
-    }
+/// Distance of lights that are directional in single precision.
+const FAR: f64 = 1e9;
+
+/// Applies `f` to offset and normal.
+fn mapped(source: &Exact, f: impl Fn(DVec3) -> DVec3) -> Exact {
+    Exact { offset: f(source.offset), normal: source.normal.map(&f) }
 }
 
-fn single(source: &LocalVpl<f64>) -> LocalVpl<f32> {
-    let round = |v: [f64; 3]| v.map(|c| c as f32);
-    match *source {
-        LocalVpl::Oriented { offset, normal } => {
-            LocalVpl::Oriented { offset: round(offset), normal: round(normal) }
-        }
-        LocalVpl::Omni { offset } => LocalVpl::Omni { offset: round(offset) },
-        LocalVpl::Directional { towards } => LocalVpl::Directional { towards: round(towards) },
-    }
+/// Returns the light in single precision, of intensity 1 at the receiver if it is directional.
+fn incidence(source: &Exact) -> Option<Incidence> {
+    let vpl = match source.distance() >= 0.5 * FAR {
+        true => LocalVpl::Directional { towards: source.direction().as_vec3().to_array() },
+        false => source.single(),
+    };
+    vpl.incidence(1e-12)
 }
 
-fn accumulated(bands: usize, lights: &[(LocalVpl<f64>, Rgb)]) -> Radiance {
+fn accumulated(bands: usize, lights: &[(Exact, Rgb)]) -> Radiance {
     let mut accumulator = Accumulator::new(bands);
     for (source, intensity) in lights {
-        if let Some(incidence) = single(source).incidence(1e-12) {
+        if let Some(incidence) = incidence(source) {
             accumulator.add(&incidence, *intensity);
         }
     }
@@ -63,18 +55,24 @@ fn accumulated(bands: usize, lights: &[(LocalVpl<f64>, Rgb)]) -> Radiance {
 }
 
 /// Computes the coefficients by definition, at the record moved by `motion`.
-fn by_definition(lights: &[(LocalVpl<f64>, Rgb)], motion: DVec3) -> [DVec3; MAX_FUNCTIONS] {
+fn by_definition(lights: &[(Exact, Rgb)], motion: DVec3) -> [DVec3; MAX_FUNCTIONS] {
     let mut sums = [DVec3::ZERO; MAX_FUNCTIONS];
     for (source, intensity) in lights {
-        let Some(incidence) = mapped(source, -motion, |v| v).incidence(1e-12) else { continue };
-        if incidence.direction[2] > 0.0 {
-            let values = evaluate(MAX_BANDS, incidence.direction);
+        let there = Exact { offset: source.offset - motion, ..*source };
+        let (direction, factor) = (there.direction(), exact_factor(&there));
+        if direction.z > 0.0 && factor > 0.0 {
+            let values = printed_functions(direction.to_array());
             for (sum, h) in sums.iter_mut().zip(values) {
-                *sum += intensity.as_dvec3() * incidence.factor * h;
+                *sum += intensity.as_dvec3() * factor * h;
             }
         }
     }
     sums
+}
+
+/// Factor of a light by its definition; 1 for directional lights.
+fn exact_factor(source: &Exact) -> f64 {
+    if source.distance() >= 0.5 * FAR { 1.0 } else { source.factor() }
 }
 
 #[test]
@@ -108,7 +106,7 @@ fn an_accumulator_begins_anew() {
     let mut accumulator = Accumulator::new(8);
     for round in 0..2 {
         for (source, intensity) in &lights {
-            if let Some(incidence) = single(source).incidence(1e-12) {
+            if let Some(incidence) = incidence(source) {
                 accumulator.add(&incidence, *intensity);
             }
         }
@@ -125,11 +123,11 @@ fn two_bands_hold_the_irradiance_exactly() {
     let lights = lights(100);
     let (mut value, mut gradient) = (DVec3::ZERO, [DVec3::ZERO; 2]);
     for (source, intensity) in &lights {
-        let Some(incidence) = source.incidence(1e-12) else { continue };
+        let Some(incidence) = incidence(source) else { continue };
         let irradiance = incidence.irradiance();
-        value += intensity.as_dvec3() * irradiance.value[2];
+        value += intensity.as_dvec3() * f64::from(irradiance.value.z);
         for axis in 0..2 {
-            gradient[axis] += intensity.as_dvec3() * irradiance.gradient[axis][2];
+            gradient[axis] += intensity.as_dvec3() * f64::from(irradiance.gradient[axis].z);
         }
     }
     for bands in 2..=MAX_BANDS {
@@ -149,7 +147,7 @@ fn turning_the_frame_turns_the_light() {
         // A rotation of the axes rotates everything the other way relative to them.
         let (sin, cos) = angle.sin_cos();
         let turn = |v: DVec3| DVec3::new(cos * v.x + sin * v.y, cos * v.y - sin * v.x, v.z);
-        let there: Vec<_> = lights.iter().map(|(s, i)| (mapped(s, DVec3::ZERO, turn), *i)).collect();
+        let there: Vec<_> = lights.iter().map(|(s, i)| (mapped(s, turn), *i)).collect();
         for bands in [1, 2, 5, 8] {
             let turned = accumulated(bands, &lights).turned(angle as f32);
             let expected = accumulated(bands, &there);

@@ -1,7 +1,6 @@
 //! Branches of the emitter tree: up to eight siblings that are weighted at once.
 
 use super::node::{ARITY, BY_POWER, EmitterNode, PointAndNormal, TreeChild};
-use base::math::f32x8;
 use glam::Vec3;
 
 /// Siblings, as a structure of arrays.
@@ -68,7 +67,7 @@ impl Branch {
         for (weight, factor) in weights.iter_mut().zip(factors.into_iter().flatten()) {
             *weight *= factor;
         }
-        let sum = f32x8::new(weights).reduce_add();
+        let sum = sum(&weights);
         let scale = if sum > 0.0 { (1.0 - BY_POWER) / sum } else { 0.0 };
         for i in 0..ARITY {
             let weight = weights[i] * scale + BY_POWER * self.share[i];
@@ -110,7 +109,14 @@ impl Branch {
     #[inline]
     pub fn probability(&self, at: PointAndNormal, factors: Option<&[f32]>, slot: usize) -> f32 {
         let weights = self.weights(at, factors);
-        let total = f32x8::new(weights).reduce_add();
+        let total = sum(&weights);
         if total > 0.0 { weights[slot] / total } else { 0.0 }
     }
+}
+
+/// Returns the sum of numbers, by halves, which compiles to vector code.
+#[inline(always)]
+fn sum(numbers: &[f32; ARITY]) -> f32 {
+    let [a, b, c, d] = std::array::from_fn(|i| numbers[i] + numbers[i + ARITY / 2]);
+    (a + c) + (b + d)
 }

@@ -1,11 +1,10 @@
 //! Nodes of the emitter tree, and their importance at a point.
 
 use super::bounds::EmitterBounds;
-use base::math::WIDTH;
 use glam::Vec3;
 
 /// Maximum number of children of a branch.
-pub const ARITY: usize = WIDTH;
+pub const ARITY: usize = 8;
 
 /// Slack of the extents over the scene's extent. Light that arrives must not have importance zero because of rounding.
 const SLACK: f32 = 1e-5;
