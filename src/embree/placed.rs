@@ -4,8 +4,7 @@
 //! bytes per place. Embree would build one geometry per place otherwise, of about eight times as many.
 
 use super::numbers::{GroupNumbers, PlacedNumbers};
-use super::quality::BuildQuality;
-use super::raw_scene::RawScene;
+use super::raw_scene::{BuildQuality, RawScene};
 use super::ray::ALL_GEOMETRY;
 use super::triangles::TriangleMesh;
 use super::{Device, EmbreeError};

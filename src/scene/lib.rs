@@ -8,7 +8,6 @@
 
 mod attribute;
 mod camera;
-mod group;
 mod light;
 mod material;
 mod mesh;
@@ -17,7 +16,6 @@ mod pixel_filter;
 mod placed;
 mod principled;
 mod projector;
-mod relief;
 pub mod requirements;
 mod statistics;
 pub mod texture;
@@ -27,15 +25,13 @@ use std::path::PathBuf;
 
 pub use attribute::{Attribute, AttributeId, AttributeValues, interpolated};
 pub use camera::{Camera, Cameras, MAX_FRAMES, MAX_SIDE, Projection};
-pub use group::Group;
 pub use light::{DeltaLight, DistantDisc, Environment, EnvironmentMap, SpotImage};
-pub use material::{Blend, Coat, Distribution, Fresnel, Lobe, Material, MaterialId};
-pub use mesh::{Emission, Mesh};
+pub use material::{Blend, Coat, Distribution, Fresnel, Lobe, Material, MaterialId, Relief};
+pub use mesh::{Emission, Group, Mesh};
 pub use parameter::{Parameter, Reflectance, Roughness, Share};
 pub use pixel_filter::PixelFilter;
 pub use principled::{Principled, Stretch, eta_of_specular};
 pub use projector::{FovAxis, Projector};
-pub use relief::Relief;
 pub use requirements::Requirements;
 pub use texture::{AttributeTexture, Filter, Texels, Texture, TextureId, Textures, Wrap};
 

@@ -3,8 +3,9 @@
 use super::attribute::{Attribute, AttributeId, interpolated};
 use super::material::MaterialId;
 use super::texture::TextureId;
-use base::math::Rgb;
+use base::math::{Placement, Rgb};
 use glam::{DVec3, Vec2, Vec3, Vec4};
+use std::ops::Range;
 
 /// An indexed triangle mesh with one material.
 #[derive(Clone, Debug)]
@@ -111,4 +112,13 @@ impl Mesh {
         };
         (0..self.triangles.len()).fold((DVec3::ZERO, 0.0), of_triangle)
     }
+}
+
+/// Meshes in coordinates of their own, and the places at which they are seen. Meshes of groups do not emit.
+#[derive(Clone, Debug)]
+pub struct Group {
+    /// Indices of the meshes in [`crate::Scene::meshes`].
+    pub meshes: Range<usize>,
+    /// Transforms to the scene's coordinates.
+    pub placements: Vec<Placement>,
 }

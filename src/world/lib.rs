@@ -7,10 +7,8 @@
 
 #![forbid(unsafe_code)]
 
-mod absorption;
 #[cfg(test)]
 mod attribute_tests;
-mod hidden;
 #[cfg(test)]
 mod instance_tests;
 mod instances;
@@ -20,7 +18,6 @@ pub mod material;
 mod meshes;
 mod packet;
 mod relief;
-mod seen;
 pub mod shadow;
 mod sheets;
 mod specular;

@@ -2,7 +2,7 @@
 //! them, too.
 //!
 //! Occlusion queries leave sheets out. The transmittance of all sheets that a free segment crosses is a factor on its
-//! light; one traversal finds them all.
+//! light; one traversal finds them all. Rays of the camera pass hidden emitters likewise.
 
 use super::World;
 use crate::material::LastStraight;
@@ -171,6 +171,30 @@ impl World {
         if self.has_sheets() {
             lanes_in(lanes).for_each(|lane| through(lane, self.transmittance_of(&segments.get(lane), most)));
         }
+    }
+}
+
+/// Maximum number of emitting surfaces along a ray that are hidden.
+const MAX_HIDDEN: u32 = 64;
+
+impl World {
+    /// Returns the rest of a camera ray behind the emitters that are hidden from it.
+    #[inline]
+    pub fn behind_hidden(&self, ray: Ray) -> Ray {
+        if !self.scene.hides_emitters { ray } else { self.behind_emitters(ray) }
+    }
+
+    /// Returns the rest of a ray behind the emitters in front.
+    fn behind_emitters(&self, mut ray: Ray) -> Ray {
+        for _ in 0..MAX_HIDDEN {
+            match self.intersect(&ray) {
+                Some(surface) if self.mesh(surface.mesh).emission.is_some() => {
+                    ray = beyond(&ray, surface.position, surface.normal, surface.t);
+                }
+                _ => break,
+            }
+        }
+        ray
     }
 }
 

@@ -1,6 +1,5 @@
 //! A scene prepared for rendering.
 
-use crate::absorption::Absorption;
 use crate::instances::{Instances, SeenAt};
 use crate::light::Emitters;
 use crate::material::{Bsdf, Materials};
@@ -9,10 +8,10 @@ use crate::relief::Reliefs;
 use crate::specular::Specular;
 use crate::surface::Surface;
 use crate::triangle::{Triangle, Triangles};
-use base::math::{Frame, Rgb};
+use base::math::{Frame, Placement, Rgb};
 use embree::{Accel, BuildQuality, Device, EmbreeError, Hit, Ray, TriangleId};
 use glam::{Vec2, Vec3};
-use scene::Scene;
+use scene::{MaterialId, Mesh, Scene};
 
 /// A scene with all tables that rendering needs.
 pub struct World {
@@ -177,5 +176,85 @@ impl World {
         let covered =
             |triangle: &Triangle| scene::texture::covered(triangle.uv_scale, triangle.normal, footprint);
         self.with_triangle(mesh, primitive, |_, triangle| covered(triangle))
+    }
+}
+
+/// Absorption coefficients of a scene.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Absorption {
+    /// Coefficient by seen mesh, 0 for those that do not absorb; empty if no mesh does.
+    by_mesh: Vec<Rgb>,
+}
+
+impl Absorption {
+    /// Collects the coefficients of a scene.
+    pub fn new(scene: &Scene) -> Absorption {
+        let of = |id: usize| scene.materials.get(id).and_then(|material| material.interior_absorption());
+        let by_mesh: Vec<Rgb> =
+            scene.meshes.iter().map(|mesh| of(mesh.material.0 as usize).unwrap_or(Rgb::ZERO)).collect();
+        match by_mesh.iter().all(|absorption| *absorption == Rgb::ZERO) {
+            true => Absorption::default(),
+            false => Absorption { by_mesh: scene.seen().map(|(mesh, _)| by_mesh[mesh]).collect() },
+        }
+    }
+
+    /// Returns true if no mesh absorbs.
+    #[inline]
+    pub fn is_empty(&self) -> bool {
+        self.by_mesh.is_empty()
+    }
+
+    /// Returns the coefficient inside a mesh; `None` if it does not absorb.
+    #[inline]
+    pub fn of(&self, mesh: u32) -> Option<Rgb> {
+        self.by_mesh.get(mesh as usize).copied().filter(|absorption| *absorption != Rgb::ZERO)
+    }
+}
+
+impl World {
+    /// Returns the stored mesh of a seen mesh.
+    #[inline(always)]
+    pub fn mesh(&self, number: u32) -> &Mesh {
+        match &self.instances {
+            None => &self.scene.meshes[number as usize],
+            Some(instances) => &self.scene.meshes[instances.stored(number)],
+        }
+    }
+
+    /// Returns the material of a seen mesh.
+    #[inline(always)]
+    pub fn material(&self, number: u32) -> MaterialId {
+        self.mesh(number).material
+    }
+
+    /// Returns the placement of a seen mesh, if it has one.
+    #[inline(always)]
+    pub(super) fn placement(&self, number: u32) -> Option<&Placement> {
+        self.instances.as_ref().and_then(|instances| instances.placement(number))
+    }
+
+    /// Returns a seen mesh at its place.
+    #[inline(always)]
+    pub(super) fn seen(&self, number: u32) -> SeenAt<'_> {
+        SeenAt { mesh: self.mesh(number), placement: self.placement(number) }
+    }
+
+    /// Returns what `of` returns for a triangle of a seen mesh, in the scene's coordinates.
+    #[inline(always)]
+    pub(super) fn with_triangle<T>(
+        &self,
+        number: u32,
+        primitive: u32,
+        of: impl Fn(SeenAt, &Triangle) -> T,
+    ) -> T {
+        let stored = self.triangles.get(number, primitive);
+        match &self.instances {
+            // Worlds without instances neither copy triangles nor ask for placements.
+            None => of(SeenAt::own(&self.scene.meshes[number as usize]), stored),
+            Some(_) => {
+                let seen = self.seen(number);
+                of(seen, &seen.triangle(stored))
+            }
+        }
     }
 }

@@ -8,7 +8,6 @@
 //! Deviations: deep data is refused. Subsampled channels under B44 compression are refused.
 
 mod channels;
-mod chroma;
 mod error;
 mod picture;
 mod primaries;
@@ -18,8 +17,7 @@ mod subsampled;
 mod tests;
 
 pub use channels::{ColourModel, NoPicture, PartNames, PictureChannels, picture_channels};
-pub use chroma::from_luma_chroma;
 pub use error::ExrError;
-pub use picture::{ExrPicture, read_picture};
+pub use picture::{ExrPicture, from_luma_chroma, read_picture};
 pub use primaries::{Primaries, REC_709};
 pub use source::{ExrSource, views};

@@ -1,7 +1,6 @@
 //! Pictures of OpenEXR files: chosen channels as linear colours over the display window.
 
 use super::channels::{ColourModel, picture_channels};
-use super::chroma::from_luma_chroma;
 use super::error::ExrError;
 use super::primaries::Primaries;
 use super::source::ExrSource;
@@ -109,4 +108,16 @@ fn place_over(pixels: Vec<Rgb>, data: IntegerBounds, display: IntegerBounds) -> 
         placed[to..to + width].copy_from_slice(&pixels[from..from + width]);
     }
     ExrPicture { size, pixels: placed }
+}
+
+/// Returns the colour of luminance Y and chroma RY = (R - Y) / Y and BY = (B - Y) / Y.
+///
+/// `weights` are the luminances of the primaries, whose sum is 1. Source: *Technical Introduction to OpenEXR*,
+/// "Luminance/Chroma Images".
+pub fn from_luma_chroma([y, ry, by]: [f32; 3], weights: Rgb) -> Rgb {
+    if ry == 0.0 && by == 0.0 {
+        return Rgb::splat(y);
+    }
+    let (red, blue) = ((1.0 + ry) * y, (1.0 + by) * y);
+    Rgb::new(red, (y - red * weights.x - blue * weights.z) / weights.y, blue)
 }

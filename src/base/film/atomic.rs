@@ -4,7 +4,8 @@
 //! target. The folder is flushed last. So a full disk, an error or a kill at any moment leaves the former content of
 //! the target. After a kill, a hidden `.NAME.*.tmp` may remain until the file is written again.
 
-use super::{ImageError, leftovers};
+use super::ImageError;
+use rustix::fs::{FlockOperation, flock};
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
@@ -136,7 +137,7 @@ pub fn write_atomically(
         Err(_) => failed.error,
     })?;
     let folder = folder_of(&target);
-    leftovers::remove(&target, &folder);
+    remove_leftovers(&target, &folder);
     sync_folder(&folder)
 }
 
@@ -149,8 +150,8 @@ fn keep(file: NamedTempFile) -> io::Result<PathBuf> {
 
 fn temporary(target: &Path) -> io::Result<NamedTempFile> {
     let mut builder = tempfile::Builder::new();
-    let prefix = leftovers::prefix(target);
-    builder.prefix(&prefix).suffix(leftovers::SUFFIX);
+    let prefix = prefix_of(target);
+    builder.prefix(&prefix).suffix(SUFFIX);
     #[cfg(unix)]
     {
         use std::os::unix::fs::PermissionsExt;
@@ -158,7 +159,7 @@ fn temporary(target: &Path) -> io::Result<NamedTempFile> {
         builder.permissions(fs::Permissions::from_mode(0o666));
     }
     let file = builder.tempfile_in(folder_of(target)).map_err(without_path)?;
-    leftovers::lock(file.as_file());
+    lock(file.as_file());
     Ok(file)
 }
 
@@ -201,6 +202,34 @@ fn sync_folder(folder: &Path) -> io::Result<()> {
         Err(error) if error.kind() == io::ErrorKind::Unsupported => Ok(()),
         Err(error) if error.kind() == io::ErrorKind::PermissionDenied => Ok(()),
         other => other,
+    }
+}
+
+/// Suffix of the names of temporary files.
+const SUFFIX: &str = ".tmp";
+
+/// Returns the prefix of the names of a file's temporary files.
+fn prefix_of(target: &Path) -> String {
+    // File names have at most 255 bytes.
+    let name: String = target.file_name().unwrap_or_default().to_string_lossy().chars().take(40).collect();
+    format!(".{name}.")
+}
+
+/// Locks a temporary file until it is closed; returns false if another process has locked it.
+fn lock(file: &File) -> bool {
+    flock(file, FlockOperation::NonBlockingLockExclusive).is_ok()
+}
+
+/// Removes the temporary files of `target` in `folder` that nobody writes. Failures are ignored.
+fn remove_leftovers(target: &Path, folder: &Path) {
+    let prefix = prefix_of(target);
+    for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
+        let name = entry.file_name();
+        let is_temporary =
+            name.to_str().is_some_and(|name| name.starts_with(&prefix) && name.ends_with(SUFFIX));
+        if is_temporary && File::open(entry.path()).is_ok_and(|file| lock(&file)) {
+            let _ = fs::remove_file(entry.path());
+        }
     }
 }
 

@@ -1,7 +1,6 @@
 //! Looks: exposure and curve of images for display.
 
-use super::shown::Shown;
-use super::tone::{Exposure, auto_factor};
+use super::tone::{Exposure, Shown, auto_factor};
 use super::tone_curve::ToneCurve;
 use crate::math::Rgb;
 use std::fmt;

@@ -19,12 +19,10 @@ pub mod heatmap;
 mod lattice;
 mod layer;
 mod layers;
-mod leftovers;
 mod look;
 pub mod metrics;
 mod png;
 pub mod sharpen;
-mod shown;
 pub mod tone;
 mod tone_curve;
 mod window;
@@ -37,8 +35,7 @@ pub use layer::{ALPHA, BACKGROUND, Layer, NO_BACKGROUND, Pixels, Preview, SAMPLE
 pub use layers::{CameraMatrices, Fact, Film, Metadata};
 pub use look::{Look, Tone};
 pub use png::{write_png, write_srgb8};
-pub use shown::Shown;
-pub use tone::{Exposure, display, srgb_slope};
+pub use tone::{Exposure, Shown, display, srgb_slope};
 pub use tone_curve::ToneCurve;
 pub use window::Window;
 

@@ -1,7 +1,7 @@
 //! 8-bit sRGB PNG files for display.
 
 use super::look::Look;
-use super::shown::Shown;
+use super::tone::Shown;
 use super::{ImageError, atomic};
 use ::image::codecs::png::PngEncoder;
 use ::image::{ExtendedColorType, ImageEncoder, ImageError as EncodeError};

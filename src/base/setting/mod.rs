@@ -4,7 +4,6 @@
 //! [`Settings::each`] visits all settings of a struct. Command-line options and their help, reports in statistics and
 //! files, benchmarks, and the page `docs/cli.md` derive from it.
 
-mod help;
 mod shared;
 mod spec;
 mod value;

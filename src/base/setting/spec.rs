@@ -1,7 +1,6 @@
 //! Description of a setting: everything but its value.
 
-use super::help::first_paragraph;
-use super::value::Value;
+use super::value::{Value, first_paragraph};
 use serde::Serialize;
 
 /// Factors from four times the default down to a quarter.

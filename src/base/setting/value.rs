@@ -1,6 +1,5 @@
 //! Types of settings. Each value has a text, which users type and which `--help` and reports show.
 
-use super::help::first_paragraph;
 use serde_json::{Value as Json, json};
 use std::any::Any;
 use std::fmt;
@@ -244,4 +243,10 @@ impl Value for [[f32; 2]; 2] {
         }
         Ok(())
     }
+}
+
+/// Returns the first paragraph of a documentation comment, as one line without the stop at its end.
+pub fn first_paragraph(doc: &str) -> String {
+    let lines: Vec<&str> = doc.lines().map(str::trim).take_while(|line| !line.is_empty()).collect();
+    lines.join(" ").trim_end_matches('.').replace('`', "")
 }

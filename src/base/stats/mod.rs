@@ -13,16 +13,14 @@ mod memory;
 pub mod meter;
 mod report;
 mod stage;
-mod sum;
 
 use meter::{Metered, Query};
 use std::collections::BTreeMap;
 
 pub use contributions::Contributions;
-pub use counter::{Counter, Observations};
+pub use counter::{Counter, Observations, add_fields};
 pub use memory::{available_bytes, give_back, peak_resident_bytes};
 pub use stage::{Stage, StageTime, Stopwatch};
-pub use sum::add_fields;
 
 /// Counters by name and times by stage.
 #[derive(Clone, Debug, Default, PartialEq)]

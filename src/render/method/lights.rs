@@ -1,7 +1,6 @@
 //! Store of virtual lights, photons and learned light, which methods share from frame to frame.
 
-use super::memo::{Memo, forget, recall};
-use super::photon_store::PhotonStore;
+use super::photon_store::{Memo, PhotonStore, forget, recall};
 use super::tally::Tally;
 use crate::method::Sampling;
 use base::progress::Control;

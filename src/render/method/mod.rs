@@ -4,16 +4,12 @@
 //! Two further abilities are traits of their own: [`Walks`] and [`Resumes`].
 
 mod lights;
-mod memo;
 mod outlook;
-pub mod output;
-mod overlap;
 pub mod path;
 mod photon_store;
 mod prepared;
 mod registry;
 mod renderer;
-mod sampled_pixels;
 mod sampling;
 mod scale;
 mod tally;
@@ -21,10 +17,8 @@ pub mod vpl;
 
 pub use lights::LightStore;
 pub use outlook::Outlook;
-pub use output::Output;
 pub use registry::Method;
-pub use renderer::{FormerFrames, Renderer, Resumes, Walks, render};
-pub use sampled_pixels::{PILOT_SPP, SampledPixels};
+pub use renderer::{FormerFrames, Output, PILOT_SPP, Renderer, Resumes, SampledPixels, Walks, render};
 pub use sampling::{HasSampling, Sampling};
 pub use scale::{Demand, LEVELS, Move, SPP, ScaleLimits};
 

@@ -1,17 +1,20 @@
-//! Traits of methods: the abilities of every method, and those of some. An ability of few methods has a default.
+//! Traits of methods: the abilities of every method, and those of some, with their results. An ability of few methods
+//! has a default.
 
 use super::lights::LightStore;
 use super::outlook::Outlook;
 use super::path::PartialImage;
-use super::sampled_pixels::SampledPixels;
 use super::sampling::HasSampling;
 use super::scale::{Demand, Move};
+use super::tally::Tally;
+use crate::cost::Work;
 use crate::denoise::effort::Sampled;
-use crate::method::Output;
-use base::film::{Image, Window};
+use crate::denoise::{DenoiseError, Quality};
+use base::film::{Image, Layer, Window};
 use base::progress::Control;
 use base::setting::Settings;
-use transport::eye::Settled;
+use base::stats::Stats;
+use transport::eye::{ByPhotons, Settled};
 use transport::paths::Estimand;
 use transport::perception::Thresholds;
 use transport::radiance_cache::retained::RetainedRecords;
@@ -157,4 +160,76 @@ pub trait Resumes {
 /// Renders one image of `view` with virtual lights of its own.
 pub fn render(world: &World, view: &View, settings: &impl Renderer, control: &Control) -> Output {
     settings.render(world, &LightStore::default(), view, control)
+}
+
+/// Samples per pixel of each of the two sets.
+pub const PILOT_SPP: u32 = 8;
+
+/// Light of some pixels by two independent sets of [`PILOT_SPP`] samples each.
+pub struct SampledPixels {
+    /// Mean luminance of each pixel, in order, by set.
+    pub luminances: [Vec<f64>; 2],
+    /// Light that the method finds with photons, by group of pixels; empty if it has no photons.
+    pub photons: Vec<ByPhotons>,
+    /// Rays per sample.
+    pub rays_a_sample: f64,
+    /// All rays traced, without those of learned light, which the image shares.
+    pub rays: u64,
+}
+
+impl SampledPixels {
+    /// Creates the light of samples that took `rays_of_samples`, besides `other_rays` of other pilots.
+    pub fn new(luminances: [Vec<f64>; 2], rays_of_samples: u64, other_rays: u64) -> SampledPixels {
+        let samples = 2.0 * f64::from(PILOT_SPP) * luminances[0].len().max(1) as f64;
+        let rays = rays_of_samples + other_rays;
+        SampledPixels {
+            luminances,
+            photons: Vec::new(),
+            rays_a_sample: rays_of_samples as f64 / samples,
+            rays,
+        }
+    }
+}
+
+/// Result of rendering one frame. All images have the size of the rendered window.
+#[derive(Clone, Debug)]
+pub struct Output {
+    /// Radiance per pixel.
+    pub color: Image,
+    /// Variance of the pixel mean in `color`, per channel, if the method can estimate it.
+    pub variance: Option<Image>,
+    /// Further images.
+    pub extra: Vec<Layer>,
+    /// Features of the surfaces seen by all samples, to guide a denoiser; empty if the method finds none.
+    pub guides: Vec<Layer>,
+    /// Layers from which a partial image can be resumed; empty if the method cannot resume.
+    pub resumable: Vec<Layer>,
+    /// Counters and times, for reports.
+    pub stats: Stats,
+    /// Work that the image took, on which later stages depend.
+    pub work: Work,
+    /// Quality of denoising, or the reason why it failed; `None` if the image was not denoised.
+    pub denoised: Option<Result<Quality, DenoiseError>>,
+    /// False if the method was cancelled: the image is partial.
+    pub complete: bool,
+    /// Samples that were not finite and were dropped. Anything but 0 is a defect that should be reported.
+    pub nonfinite: u64,
+}
+
+impl Output {
+    /// Creates a complete image without further layers.
+    pub(super) fn new(color: Image, tally: Tally) -> Output {
+        Output {
+            color,
+            variance: None,
+            extra: Vec::new(),
+            guides: Vec::new(),
+            resumable: Vec::new(),
+            stats: tally.stats,
+            work: tally.work,
+            denoised: None,
+            complete: true,
+            nonfinite: 0,
+        }
+    }
 }

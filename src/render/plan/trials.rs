@@ -4,9 +4,9 @@
 //! [`super::time_model`] suggests, as far as their share of the time allows.
 
 use super::ladder::Ladder;
-use super::small_view::smaller;
 use super::time_model::{Size, TimeModel, Timed};
 use crate::method::{Demand, Method};
+use base::film::Window;
 use world::view::View;
 
 /// Maximum share of the remaining time for a small render.
@@ -142,6 +142,17 @@ pub fn size(method: &Method, view: &View) -> Size {
     }
 }
 
+/// Returns the view on a film `scale` times smaller along each side.
+pub fn smaller(view: &View, scale: u32) -> View {
+    let window = &view.window;
+    let side = |n: u32| n.div_ceil(scale).max(1);
+    let film = window.film.map(side);
+    let offset = [0, 1].map(|k| (window.offset[k] / scale).min(film[k] - 1));
+    let [width, height] =
+        [(0, window.width), (1, window.height)].map(|(k, size)| side(size).min(film[k] - offset[k]));
+    View { window: Window { film, offset, width, height }, ..*view }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -191,5 +202,18 @@ mod tests {
         let mut trials = Trials::new(&ladder, &view, 0.0);
         assert!(trials.best(1.0).is_none() && trials.next(1.0).is_some());
         assert!(trials.next(1.0).is_none());
+    }
+
+    #[test]
+    fn small_films_are_valid_whatever_the_crop() {
+        let small = |window, scale| smaller(&View { camera: Camera::default(), window }, scale).window;
+        let crop = Window { film: [97, 41], offset: [90, 3], width: 7, height: 38 };
+        for window in [crop, Window::whole([1, 1]), Window::whole([1, 500]), Window::whole([512, 512])] {
+            for scale in [1, 2, 4, 8, 1000] {
+                assert!(small(window, scale).is_valid(), "{window:?} {scale}");
+            }
+            assert_eq!(small(window, 1), window);
+        }
+        assert_eq!(small(Window::whole([512, 256]), 8), Window::whole([64, 32]));
     }
 }

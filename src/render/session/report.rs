@@ -1,7 +1,6 @@
 //! Reports of a plan and of the measured error, for statistics, metadata and users.
 
-use super::frame::Remark;
-use super::notes::Notes;
+use super::frame::{Notes, Remark};
 use crate::method::Method;
 use crate::plan::MethodChoice;
 use crate::verify::{Estimate, Verified, VerifySettings};

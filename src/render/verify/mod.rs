@@ -21,10 +21,9 @@
 mod interval;
 mod measure;
 mod picks;
-mod settings;
 mod trace;
 mod truth;
 
 pub use interval::{Estimate, NORMAL_975};
-pub use settings::VerifySettings;
+pub use trace::VerifySettings;
 pub use truth::{Truth, Verified, verify};

@@ -2,7 +2,7 @@
 
 use super::measure::{MEANS, Measured};
 use super::picks::Pick;
-use super::settings::VerifySettings;
+use crate::method::Method;
 use crate::method::path::{PixelPaths, PixelSampling, RayCounts, pixel_means};
 use base::film::metrics::REL_MSE_FLOOR;
 use base::film::{Image, sharpen};
@@ -154,5 +154,43 @@ impl Tracing<'_> {
         traced.paths += MEANS as u64 * wanted.iter().map(|w| u64::from(w.samples)).sum::<u64>();
         self.control.advance(picks.len() as u64);
         Some(pixels)
+    }
+}
+
+/// Settings of a verification.
+#[derive(Clone, Copy, Debug)]
+pub struct VerifySettings {
+    /// Approximate number of pixels.
+    pub pixels: usize,
+    /// Quantity that a pixel estimates.
+    pub estimand: Estimand,
+    /// Seed of the choice of pixels and of their paths.
+    pub seed: u32,
+    /// Maximum path length in edges; `None` for the scene's own limit.
+    pub max_depth: Option<u32>,
+    /// Maximum number of paths per pixel.
+    pub max_samples: u32,
+}
+
+impl VerifySettings {
+    /// Returns these settings for an image of `method`, whose eye samples may differ from those planned with.
+    pub fn of(self, method: &Method) -> VerifySettings {
+        let estimand = match self.estimand {
+            Estimand::Pixels => Estimand::Pixels,
+            Estimand::EyeSamples { .. } => Estimand::EyeSamples { spp: method.spp(), seed: method.seed() },
+        };
+        VerifySettings { estimand, ..self }
+    }
+}
+
+impl Default for VerifySettings {
+    fn default() -> VerifySettings {
+        VerifySettings {
+            pixels: 1000,
+            estimand: Estimand::Pixels,
+            seed: 0,
+            max_depth: None,
+            max_samples: 4096,
+        }
     }
 }

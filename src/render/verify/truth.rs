@@ -3,8 +3,7 @@
 use super::interval::Estimate;
 use super::measure;
 use super::picks::{self, Pick};
-use super::settings::VerifySettings;
-use super::trace::{TracedPixels, trace};
+use super::trace::{TracedPixels, VerifySettings, trace};
 use base::film::Image;
 use base::progress::Control;
 use base::stats::Stage;

@@ -5,7 +5,6 @@
 //! crates that look textures up use the scene already. [`Textures`] is shared, so materials and emitters hold what they
 //! look up and copy no texels.
 
-mod attribute;
 mod coverage;
 mod halving;
 mod image;
@@ -13,9 +12,8 @@ mod mip_maps;
 mod texels;
 mod textures;
 
-pub use attribute::AttributeTexture;
 pub use coverage::{covered, uv_scale};
-pub use image::{Filter, Texture, TextureId, Wrap};
+pub use image::{AttributeTexture, Filter, Texture, TextureId, Wrap};
 pub use mip_maps::MipMaps;
 pub use texels::Texels;
 pub use textures::Textures;

@@ -1,7 +1,6 @@
 //! The textures of a scene, shared by all that look them up.
 
-use super::attribute::AttributeTexture;
-use super::image::{Texture, TextureId, cut};
+use super::image::{AttributeTexture, Texture, TextureId, cut};
 use crate::attribute::AttributeId;
 use base::math::Rgb;
 use glam::Vec2;
@@ -37,11 +36,6 @@ impl Textures {
     /// Returns all textures that are attributes of meshes.
     pub fn attributes(&self) -> &[AttributeTexture] {
         &self.attributes
-    }
-
-    /// Returns the images for changes. They are copied first if they are shared.
-    pub fn edit(&mut self) -> &mut [Texture] {
-        Arc::make_mut(&mut self.images)
     }
 
     /// Adds images behind those that are there, which are copied.

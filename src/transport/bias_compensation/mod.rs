@@ -25,7 +25,6 @@
 //! Units: b in 1/m².
 
 pub mod lobes;
-pub mod near_surface;
 pub mod points;
 pub mod short_rays;
 

@@ -15,7 +15,6 @@ mod guide;
 mod guides;
 mod merge;
 mod more;
-mod needs;
 mod parts;
 mod pass;
 mod photon_count;

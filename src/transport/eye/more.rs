@@ -3,13 +3,13 @@
 //! Some tiles need many times the samples of others, so a tile is divided into parts that threads take one by one.
 //! Parts end where a batch of paths ends: paths are traced together as if the tile were not divided.
 
-use super::VisibleSurfaces;
-use super::adaptive::MULTIPLES;
+use super::adaptive::{AdaptiveRule, Luminances, MULTIPLES};
+use super::effort::Effort;
 use super::guides::Guide;
 use super::merge::{MergedPoint, merge};
-use super::needs::Needs;
-use super::tracer::{SampledTile, Tracer, TracerWorkspace, traced_together};
-use base::math::Rgb;
+use super::tracer::{BATCH, SampledTile, Tracer, TracerWorkspace, traced_together};
+use super::{EyeCounts, VisibleSurfaces};
+use base::math::{Rgb, luminance};
 use std::sync::Arc;
 
 /// Pixels of a tile that get equally many samples beyond the first.
@@ -151,4 +151,41 @@ impl PartPixels {
 /// Returns the shading points that the first samples of a pixel have found.
 fn first_points<'w>(tile: &SampledTile<'w>, i: usize) -> Vec<MergedPoint<'w>> {
     tile.ranges[i].clone().map(|point| tile.points.get(point)).collect()
+}
+
+/// Result of the first samples that decides where more are taken.
+pub(super) struct Needs {
+    pub(super) choice: AdaptiveRule,
+    /// Luminances found by the first samples, in the window and in the pixels next to it.
+    pub(super) luminances: Luminances,
+    /// Rays traced for the pixels next to the window.
+    pub(super) chains: EyeCounts,
+}
+
+impl<'w> Tracer<'_, 'w> {
+    /// Determines which pixels need more samples than the first; returns `None` if no pixel gets more.
+    pub(super) fn needs(&self, effort: &Effort, tiles: &[SampledTile]) -> Option<Needs> {
+        let (choice, seed) = (effort.choice?, self.settings.seed);
+        let (window, near) = (&self.view.window, self.view.window.grown(1));
+        let mut luminances = Luminances { values: vec![0.0; near.pixel_count() as usize], window: near };
+        for tile in tiles {
+            for ((pixel, sum), samples) in tile.pixels.iter().zip(&tile.sums).zip(&tile.samples) {
+                luminances.set(window.film_pixel(*pixel), luminance(*sum / *samples as f32));
+            }
+        }
+        self.direct.settled.smooth(window, &mut luminances);
+        let is_beside = |pixel: &[u32; 2]| window.index(*pixel).is_none();
+        let beside: Vec<[u32; 2]> = match near == *window {
+            true => Vec::new(),
+            false => near.film_pixels().filter(is_beside).collect(),
+        };
+        let beside: Vec<Vec<[u32; 2]>> = beside.chunks(BATCH as usize).map(<[_]>::to_vec).collect();
+        let (values, chains) = self.luminances(beside.clone(), seed);
+        beside
+            .iter()
+            .flatten()
+            .zip(values.iter().flatten())
+            .for_each(|(pixel, [mean, _])| luminances.set(*pixel, *mean));
+        Some(Needs { choice, luminances, chains: chains.into_iter().sum() })
+    }
 }

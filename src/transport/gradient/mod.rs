@@ -13,7 +13,6 @@
 //! have none; irradiance gets it from the direction.
 
 mod incidence;
-mod profile;
 mod source;
 
 pub use incidence::Incidence;

@@ -1,12 +1,13 @@
 //! Random points, materials and virtual lights for tests of cuts.
 
 use super::{CutSettings, Receiver, ReceiverPacket, Visibility};
+use crate::lightcut::{Receiver, Transfer, Visibility, to_vpl};
 use crate::lights::{Family, LightTrees, LobeProfile, Origin, Profiles, SpotProfile, Vpl, VplKind, VplSet};
-use base::math::{Frame, Rgb, lanes_in};
+use base::math::{Frame, Rgb, V3, Vec3x16, lanes_in};
 use base::progress::Control;
 use base::sampling::{hash, uniform_sphere};
 use embree::Rays16;
-use glam::{Vec2, Vec3};
+use glam::{DVec3, Vec2, Vec3};
 use scene::{Coat, Distribution, Fresnel, Lobe, Material, MaterialId, Reflectance, Roughness, Scene};
 use world::material::Materials;
 
@@ -207,4 +208,21 @@ pub fn alone<'m>(receiver: Receiver<'m>) -> ReceiverPacket<'m> {
     let mut packet = ReceiverPacket::new();
     packet.set([receiver]);
     packet
+}
+
+/// Gathers the light of all VPLs at `receiver`, without clamping.
+pub fn gather_all<V: Visibility>(transfer: &Transfer, visibility: &V, receiver: &Receiver) -> Rgb {
+    let (x, normal) = (receiver.position(), receiver.geometric_normal());
+    let (mut rays, mut sum) = (Rays16::default(), DVec3::ZERO);
+    for leaf in transfer.trees.leaves() {
+        let (vpl, before) = transfer.trees.representative(leaf);
+        let contribution = leaf.intensity * transfer.unshadowed(receiver, vpl, leaf.kind());
+        rays.set(0, &to_vpl(x, normal, vpl, leaf.kind()));
+        if contribution != Rgb::ZERO && visibility.visible16(&rays, 1, None) != 0 {
+            let mut light = Vec3x16::splat(contribution);
+            visibility.attenuate16(&rays, 1, |_| receiver.sheets(before), &mut light);
+            sum += light.get(0).as_dvec3();
+        }
+    }
+    sum.as_vec3()
 }

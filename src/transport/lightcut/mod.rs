@@ -15,8 +15,6 @@
 
 mod clamp;
 mod coherence;
-#[cfg(test)]
-mod exhaustive;
 pub mod expected;
 #[cfg(test)]
 pub(crate) mod fixtures;
@@ -33,7 +31,7 @@ mod visibility;
 pub use clamp::{MAX_STEPS, frozen_luminance};
 pub use coherence::{CoherenceLimit, OrientedPoint, group_coherent, group_compact};
 #[cfg(test)]
-pub use exhaustive::gather_all;
+pub use fixtures::gather_all;
 pub use packet::{
     BRIGHTER, Clamps, Lightcut, PacketCluster, PacketCut, PacketSum, ReceiverPacket, SampledCut,
     SampledSettings, Samples,

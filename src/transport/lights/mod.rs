@@ -11,7 +11,6 @@ mod indirect;
 mod intensities;
 mod octahedral;
 mod origin;
-mod pass;
 mod profile;
 mod scene_lights;
 mod settings;
@@ -22,9 +21,8 @@ mod vpl;
 
 pub use intensities::{Intensities, IntensitySamples};
 pub use origin::{DirectIndirect, Origin};
-pub use pass::{LightPass, light_pass};
 pub use profile::{LobeProfile, Profiles, SpotProfile};
-pub use scene_lights::{Lights, LightsWanted};
+pub use scene_lights::{LightPass, Lights, LightsWanted, light_pass};
 pub use settings::LightPassSettings;
 pub use tree::{Family, LightNode, LightTrees, MAX_VPLS};
 pub use vpl::{MIN_DISTANCE, Vpl, VplKind, VplSet, min_dist_sq, near_sq_of_size, size_of_area};

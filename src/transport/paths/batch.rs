@@ -7,8 +7,7 @@
 //! Deviations: Embree's packets change the last bits of a hit, never its meaning. A batch always holds the same paths
 //! in the same order, so that images do not depend on threads.
 
-use super::counts::RayCounts;
-use super::found_light::{FoundLight, ShadowPacket};
+use super::found_light::{FoundLight, RayCounts, ShadowPacket};
 use super::groups::{FirstHits16, collect};
 use super::packet::{Packet, PathStage};
 use super::policy::PathPolicy;

@@ -1,6 +1,5 @@
-//! Light that paths find at vertices, if nothing occludes it.
+//! Light that paths find at vertices, if nothing occludes it, and counts of the rays.
 
-use super::counts::RayCounts;
 use base::math::{LANES, Rgb, U32x16, Vec3x16, first_lanes, lanes_in};
 use embree::Rays16;
 use world::World;
@@ -74,4 +73,13 @@ impl FoundLight<'_> {
             self.radiance[slot[lane] as usize] += radiance.get(lane);
         }
     }
+}
+
+/// Rays traced.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct RayCounts {
+    /// Closest-hit queries.
+    pub rays: u64,
+    /// Occlusion queries.
+    pub shadow_rays: u64,
 }

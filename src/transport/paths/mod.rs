@@ -6,7 +6,6 @@
 mod arrival;
 mod batch;
 mod chain_ends;
-mod counts;
 mod estimand;
 mod found_light;
 mod groups;
@@ -20,8 +19,8 @@ mod vertex;
 mod vertices;
 
 pub use batch::Batch;
-pub use counts::RayCounts;
 pub use estimand::{Estimand, eye_sampler};
+pub use found_light::RayCounts;
 pub(crate) use groups::{MAX_DISTANCE, MAX_HEIGHT, MIN_OUT_COS};
 pub use policy::{ChainEnd, LightSamples, PathPolicy, ScatteredEdges};
 pub use start::{PathStart, start};

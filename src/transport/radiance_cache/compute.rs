@@ -6,27 +6,27 @@
 //! errors of the other.
 //!
 //! Paper: Herzog et al. 2009, section 6.
+//! Deviations: series are clamped and not compensated (see [`crate::bias_compensation`]).
 
-use super::candidate::Candidate;
-use super::cells::CellLimits;
-use super::compensate;
+use super::cells::{Candidate, CellLimits};
 use super::footprint::{Footprint, FootprintLimits};
 use super::gather::{GatheredLayer, GatheredLayer16};
 use super::lit_cluster::{Arriving16, RecordPoints};
 use super::lit_cut::LitCut;
 use super::occluder_distance::OccluderLog;
 use super::occlusion_hessian::OcclusionHessian;
-use super::record::NewRecord;
-use super::record::{Diagnostics, Record};
+use super::record::{Diagnostics, NewRecord, Record};
 use super::series::SeriesGatherer;
 use super::settings::{CacheSettings, Footprints};
-use super::source::{LightcutSource, RecordSource};
-use crate::bias_compensation::points::Compensator;
+use crate::bias_compensation::Compensation;
+use crate::bias_compensation::points::{Compensator, Lacking};
+use crate::bias_compensation::short_rays::ClampedPoint;
 use crate::eye::edge_class;
 use crate::hsh::Radiance;
 use crate::lightcut::{CutCounts, CutSettings, Lightcut, OrientedPoint, ReceiverPacket, group_compact};
 use crate::lights::{DirectIndirect, Origin};
-use base::math::{LUMINANCE, luminance};
+use crate::shade::ShadingContext;
+use base::math::{LUMINANCE, Rgb, luminance};
 use base::parallel::{ShortRuns, Workspaces};
 use glam::{Mat3, Vec3};
 use rayon::prelude::*;
@@ -156,7 +156,7 @@ impl<'w> RecordWorkspace<'w> {
         let mut light = self.gather(s, group);
         if let Some(c) = &s.context.compensation {
             let mut gathered: Vec<_> = light.iter_mut().map(|light| &mut light.layers).collect();
-            compensate::add(c, &mut self.compensator, group, &mut gathered);
+            compensate(c, &mut self.compensator, group, &mut gathered);
             self.cut.counts += self.compensator.take_counts().cuts;
         }
         let mut records = Vec::with_capacity(2 * group.len());
@@ -209,4 +209,64 @@ impl<'w> RecordWorkspace<'w> {
         }
         light
     }
+}
+
+/// Adds the compensation for clamped virtual lights to the direct and indirect light of a task's records.
+fn compensate(
+    c: &Compensation,
+    compensator: &mut Compensator,
+    task: &[Candidate],
+    gathered: &mut [&mut DirectIndirect<GatheredLayer>],
+) {
+    let clamped = |(candidate, gathered): (&Candidate, &&mut DirectIndirect<GatheredLayer>)| ClampedPoint {
+        point: candidate.point,
+        bound: if candidate.missing.indirect { gathered.indirect.bound } else { f32::INFINITY },
+        direct: candidate.missing.direct,
+        edges: candidate.edges,
+    };
+    let points: Vec<ClampedPoint> = task.iter().zip(gathered.iter()).map(clamped).collect();
+    let irradiances = gathered.iter().map(|g| luminance(g.direct.irradiance + g.indirect.irradiance));
+    let mean = irradiances.sum::<f32>() / task.len().max(1) as f32;
+    compensator.lacking(c, &points, mean, None, |record, Lacking { near, reflected, emitted }| {
+        let candidate = &task[record];
+        let passed = match candidate.coat {
+            0 => 1.0,
+            coat => c.world.materials.coat_transmittance(coat, near.cos),
+        };
+        for (origin, light) in [(Origin::Direct, emitted), (Origin::Indirect, reflected)] {
+            if light != Rgb::ZERO {
+                gathered[record][origin].compensate(candidate.point.normal, light * passed, near.distance);
+            }
+        }
+    });
+}
+
+/// Algorithm that computes records.
+pub trait RecordSource: Sync {
+    /// Settings of the cache.
+    fn settings(&self) -> &CacheSettings;
+
+    /// Returns the limits on the cells that get a record.
+    fn cells(&self) -> CellLimits {
+        CellLimits::new(self.settings())
+    }
+
+    /// Computes records of the missing layers. The order does not depend on the number of threads. Records whose light
+    /// is not finite are left out.
+    fn records(&self, candidates: &[Candidate]) -> (Vec<NewRecord>, CutCounts);
+}
+
+/// Source that computes records by lightcuts.
+#[derive(Clone, Copy)]
+pub struct LightcutSource<'a> {
+    /// Scene and virtual lights.
+    pub context: ShadingContext<'a>,
+    /// Settings of the cache.
+    pub settings: &'a CacheSettings,
+    /// Limits on the cells that get a record.
+    pub cells: CellLimits,
+    /// Cap and clamp of cuts, which are those of eye samples; the error bound is that of [`CacheSettings`] instead.
+    pub cut: &'a CutSettings,
+    /// True if neighbours share cuts.
+    pub share: bool,
 }

@@ -7,10 +7,10 @@
 
 use super::adapt::{self, Discontinuity};
 use super::cells::CellLimits;
+use super::compute::RecordSource;
 use super::placement::{CandidateStep, candidates};
 use super::record::Record;
 use super::settings::CacheSettings;
-use super::source::RecordSource;
 use super::splat::Splat;
 use super::store::Records;
 use super::targets::Targets;

@@ -1,6 +1,6 @@
 //! Records, eye samples and lights for tests.
 
-use super::candidate::Candidate;
+use super::cells::Candidate;
 use super::footprint::Footprint;
 use super::record::{Diagnostics, Record};
 use super::targets::Targets;

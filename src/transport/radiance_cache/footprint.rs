@@ -10,7 +10,7 @@
 //! eleven times (1/0.3²). Geometry near a record is found at the frame's shading points, not by the rays of
 //! neighbouring records.
 
-use super::candidate::Candidate;
+use super::cells::Candidate;
 use super::settings::{CacheSettings, Footprints};
 use crate::lights::Origin;
 use base::math::Frame;

@@ -1,6 +1,6 @@
 //! Clusters of a cut, and their light at the points of up to sixteen records.
 
-use super::candidate::Candidate;
+use super::cells::Candidate;
 use crate::lightcut::Transfer;
 use crate::lights::{LightNode, LobeProfile, Vpl, VplKind};
 use base::math::{F32x16, Frame, LANES, Vec3x16, lanes_in};

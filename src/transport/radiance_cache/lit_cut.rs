@@ -3,7 +3,7 @@
 //! One pass computes the light of each cluster at all points ([`Arriving16`]). Irradiance, second derivatives and
 //! series are sums over that light.
 
-use super::candidate::Candidate;
+use super::cells::Candidate;
 use super::gather::GatheredLayer16;
 use super::lit_cluster::{Arriving16, LitCluster, RecordPoints};
 use super::occluder_distance::OccluderDistances;

@@ -11,10 +11,9 @@
 //!   [`vantage`]: the cameras of its frames.
 //!
 //! Computation:
-//! - [`candidate`]: points where records are needed; [`source`]: what computes records there;
+//! - [`cells`]: points where records are needed; [`compute`]: what computes records there;
 //! - [`compute`]: records by lightcuts that neighbours share; [`lit_cluster`], [`lit_cut`]: the light of a cut at the
 //!   points of records; [`gather`], [`series`]: the sums over it;
-//! - [`compensate`]: light lost to clamping, recovered by short rays;
 //! - [`occluder_distance`]: distances of occluders, which bound footprints;
 //! - [`probe`], [`edges`], [`occlusion_hessian`]: surfaces around a record, and the change of its light due to the
 //!   motion of occluders' edges.
@@ -26,9 +25,7 @@
 //! - [`resolve`]: light of records at the eye samples, and the parts left to cuts; [`inspect`]: images of records;
 
 pub mod adapt;
-pub mod candidate;
 pub mod cells;
-pub mod compensate;
 pub mod compute;
 pub mod edges;
 pub mod fill;
@@ -50,7 +47,6 @@ pub mod resolve;
 pub mod retained;
 pub mod series;
 pub mod settings;
-pub mod source;
 pub mod splat;
 pub mod store;
 pub mod targets;

@@ -7,7 +7,7 @@
 //! Known light masks the errors of a record, as the other layer does in section 6. Sampled direct light counts only as
 //! far as the darkest part of the record's neighbourhood has it.
 
-use super::candidate::Candidate;
+use super::cells::Candidate;
 use super::splat::Splat;
 use super::targets::Targets;
 use crate::lights::DirectIndirect;

@@ -14,8 +14,7 @@
 //! unused for longest are dropped first.
 
 use super::fill::CacheFrame;
-use super::record::NewRecord;
-use super::record::Record;
+use super::record::{NewRecord, Record};
 use super::settings::CacheSettings;
 use super::store::Records;
 use super::vantage::Vantage;
@@ -213,9 +212,9 @@ impl RetainedRecord {
 
 #[cfg(test)]
 mod tests {
-    use super::super::candidate::Candidate;
+    use super::super::cells::Candidate;
+    use super::super::compute::RecordSource;
     use super::super::fixtures::{Floor, record};
-    use super::super::source::RecordSource;
     use super::*;
     use crate::lightcut::CutCounts;
     use base::math::Rgb;

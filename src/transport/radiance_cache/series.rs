@@ -1,6 +1,6 @@
 //! Sums of the light at a record into series of radiance.
 
-use super::candidate::Candidate;
+use super::cells::Candidate;
 use super::lit_cluster::LitCluster;
 use crate::gradient::Incidence;
 use crate::hsh::{Accumulator, Radiance};

@@ -1,9 +1,9 @@
 //! Gradients that include occluders' edges against irradiance summed over all virtual lights, around a ball
 //! and a table.
 
-use super::candidate::Candidate;
+use super::cells::Candidate;
+use super::compute::{LightcutSource, RecordSource};
 use super::record::Record;
-use super::source::{LightcutSource, RecordSource};
 use super::{CacheSettings, CellLimits, Footprints};
 use crate::eye::{EyePass, EyeSettings};
 use crate::lightcut::{CutSettings, Receiver, Transfer, gather_all};

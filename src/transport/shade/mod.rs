@@ -9,7 +9,6 @@
 
 mod bands;
 mod context;
-mod frame;
 mod gatherers;
 mod image;
 mod patches;
@@ -17,8 +16,7 @@ mod shader;
 
 pub use bands::Reflected;
 pub use context::{ShadeSettings, ShadingContext, ShadingTask};
-pub use frame::{ShadedPatch, shade};
 pub use gatherers::{Gatherers, Shaded};
 pub use image::ShadedImage;
 pub use patches::patches;
-pub use shader::{Shader, ShadingCounts};
+pub use shader::{ShadedPatch, Shader, ShadingCounts, shade};

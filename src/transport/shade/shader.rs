@@ -1,12 +1,15 @@
-//! Shading of a frame by one thread.
+//! Shading of a frame, and its part by one thread.
 
 use super::patches::next_group;
 use super::{Gatherers, ShadeSettings, Shaded, ShadingContext, ShadingTask};
 use crate::bias_compensation::points::CompensationCounts;
 use crate::eye::ShadingPoints;
 use crate::lightcut::CutCounts;
+use base::math::Rgb;
+use base::parallel::{ShortRuns, Workspaces};
 use base::progress::Control;
 use base::stats::add_fields;
+use rayon::prelude::*;
 use std::mem::take;
 use world::shadow::{Engine, ShadowCounts};
 
@@ -81,4 +84,49 @@ impl<'c, 'w> Shader<'c, 'w> {
         let (cuts, compensation) = self.gatherers.take_counts();
         ShadingCounts { cuts, shadows: self.shadows.take_counts(), compensation }
     }
+}
+
+/// Radiance of the points of a patch.
+pub type ShadedPatch = Vec<(ShadingTask, Rgb)>;
+
+/// Radiance of shading points.
+#[derive(Default)]
+pub struct Shading {
+    /// Radiance by patch, in the order of the patches.
+    pub patches: Vec<ShadedPatch>,
+    /// Work done.
+    pub counts: ShadingCounts,
+}
+
+/// Shades patches of tasks; skips the remaining ones if `control` is cancelled. Calls `show` with every patch that is
+/// done.
+pub fn shade<'w>(
+    context: &ShadingContext<'w>,
+    points: &ShadingPoints<'w>,
+    patches: &[Vec<ShadingTask>],
+    settings: &ShadeSettings,
+    control: &Control,
+    show: impl Fn(&ShadedPatch) + Sync,
+) -> Shading {
+    let shaders = Workspaces::new(|| Shader::new(context, settings));
+    let shade = |patch: &Vec<ShadingTask>| {
+        let mut radiance = Vec::with_capacity(patch.len());
+        if control.is_cancelled() {
+            return (radiance, ShadingCounts::default());
+        }
+        shaders.with(|shader| {
+            shader.begin_chunk();
+            shader.shade(points, patch, |task, shaded| radiance.push((task, shaded.radiance)));
+            show(&radiance);
+            control.advance(patch.len() as u64);
+            (radiance, shader.take_counts())
+        })
+    };
+    let done: Vec<(ShadedPatch, ShadingCounts)> = patches.par_iter().one_by_one().map(shade).collect();
+    let mut all = Shading { patches: Vec::with_capacity(done.len()), ..Shading::default() };
+    for (patch, counts) in done {
+        all.patches.push(patch);
+        all.counts += counts;
+    }
+    all
 }

@@ -1,7 +1,6 @@
 //! Point, spot and directional lights, and projectors.
 
-use super::falloff::spot_falloff;
-use super::image::ImageLight;
+use super::image::{ImageLight, spot_falloff};
 use base::math::{Rgb, luminance};
 use glam::Vec3;
 use scene::{DeltaLight, Projector, Textures};

@@ -7,7 +7,6 @@
 //! Units: intensities in W/sr, flux in W.
 
 use super::distribution::DiscreteDistribution;
-use super::falloff::spot_falloff;
 use base::math::{Rgb, luminance};
 use glam::{Mat3, Vec2, Vec3};
 use scene::{DeltaLight, Projector, SpotImage, Texture, TextureId, Textures};
@@ -178,5 +177,18 @@ impl ImageLight {
     /// Unit vector through the image's centre.
     pub fn axis(&self) -> Vec3 {
         self.to_local.transpose() * Vec3::Z
+    }
+}
+
+/// Returns the share of a spot's axial intensity at the given cosine to its axis.
+#[inline]
+pub fn spot_falloff(cos: f32, inner_angle: f32, outer_angle: f32) -> f32 {
+    let angle = cos.clamp(-1.0, 1.0).acos();
+    if angle <= inner_angle {
+        1.0
+    } else if angle >= outer_angle {
+        0.0
+    } else {
+        (outer_angle - angle) / (outer_angle - inner_angle)
     }
 }

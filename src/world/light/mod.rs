@@ -14,7 +14,6 @@ mod environment;
 mod factor;
 #[cfg(test)]
 mod factor_tests;
-mod falloff;
 mod image;
 #[cfg(test)]
 mod image_tests;
@@ -36,8 +35,7 @@ pub use direct::{DirectSample, DirectSamples16};
 pub use distribution::DiscreteDistribution;
 pub use emitters::Emitters;
 pub use environment::{EnvironmentLight, EnvironmentSample};
-pub use falloff::spot_falloff;
-pub use image::ImageLight;
+pub use image::{ImageLight, spot_falloff};
 pub use learned::Learned;
 pub use observed::{LightRays, Observed};
 pub use receivers::Receivers16;

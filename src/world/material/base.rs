@@ -5,10 +5,9 @@
 //! tables of 64 cosines, evenly spaced and linear between them; single scattering only; the internal reflectance is the
 //! plain mean over the 64 cosines.
 
-use super::albedo::albedo;
 use super::fresnel;
 use super::microfacet::Microfacets;
-use super::table::{ANGLES, AngleTable, direction, rule};
+use super::table::{ANGLES, AngleTable, albedo, direction, rule};
 use base::math::{Lane, Rgb, V3};
 use glam::Vec3;
 use scene::{Coat, Fresnel};

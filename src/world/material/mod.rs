@@ -6,15 +6,14 @@
 //! `roughplastic`, `conductor`, `roughconductor`, `dielectric`, `roughdielectric`, `principled`,
 //! `principledthin`, `mask` and `twosided`.
 //!
-//! Files use only files before them in this order: `microfacet`, `fresnel`, `table` and `albedo`; `means`; `base` and
-//! `lobe` (one file per lobe); `model` and `lobe_set` (data); `seen`, `bsdf`, `sample`, `bound`, `packet`,
-//! `mean` and `straight` (evaluation); `colours`, `layers` and `build` (from the scene's materials);
+//! Files use only files before them in this order: `microfacet`, `fresnel`, `table` and `albedo`; `base` and
+//! `lobe` (one file per lobe); `model` (data); `seen`, `bsdf`, `sample`, `bound`, `packet` and `straight`
+//! (evaluation); `colours`, `layers` and `build` (from the scene's materials);
 //! `materials` (lookup).
 //!
 //! All directions are in the local shading frame (z = shading normal), point away from the surface and have unit
 //! length: `wo` towards the eye or the previous vertex of the path, `wi` towards the light.
 
-mod albedo;
 mod base;
 mod bound;
 mod bsdf;
@@ -23,10 +22,7 @@ mod colours;
 mod fresnel;
 mod layers;
 mod lobe;
-mod lobe_set;
 mod materials;
-mod mean;
-mod means;
 mod microfacet;
 mod model;
 mod packed;
@@ -40,11 +36,10 @@ mod table;
 mod tables;
 
 pub use bound::AlikeBsdfs16;
+pub use bsdf::MeanBsdf;
 pub use lobe::{BsdfSample, DirectionBound, DullLobe, LobeShape};
-pub use lobe_set::LobeSet;
 pub use materials::Materials;
-pub use mean::MeanBsdf;
-pub use model::Bsdf;
+pub use model::{Bsdf, LobeSet};
 pub use packed::PackedBsdf;
 pub use packet::{BsdfSamples16, Bsdfs16};
 pub use straight::LastStraight;

@@ -1,8 +1,7 @@
 //! Materials at sixteen points at once: lanes of one model are evaluated together.
 
 use super::lobe::{BsdfSample, MAX_LOBES};
-use super::lobe_set::LobeSet;
-use super::model::{Bsdf, Model};
+use super::model::{Bsdf, LobeSet, Model};
 use super::seen::{Sampled, Seen};
 use base::math::{F32x16, LANES, Lane, Mask16, Rgb, U32x16, V3, Vec2x16, Vec3x16, f32x16, lanes_in, mask_of};
 use base::sampling::cosine_direction;

@@ -7,9 +7,9 @@
 //! that takes more than 2048 models. The tables of the coat are made for every eighth level. Values below
 //! 1/1024 are clamped to it. The roughness of other lobes is the mean of its texture.
 
-use super::means::TextureMeans;
-use base::math::luminance;
-use scene::{Lobe, Material, Roughness, Scene, TextureId};
+use base::math::{Rgb, luminance};
+use rayon::prelude::*;
+use scene::{AttributeTexture, Lobe, Material, Roughness, Scene, Texture, TextureId};
 use std::ops::RangeInclusive;
 
 /// Number of levels between a value and its double.
@@ -190,6 +190,33 @@ impl RoughnessValues<'_> {
             let known = self.levels.and_then(|levels| levels.iter().find(|(known, _)| *known == texture));
             known.map_or_else(|| luminance(self.means.of(texture)), |(_, found)| level(*found).value())
         })
+    }
+}
+
+/// Mean of each texture of a scene, over its texels or over the surfaces that have its attribute.
+pub(super) struct TextureMeans {
+    images: Vec<Rgb>,
+    /// Attribute textures and their means.
+    attributes: Vec<Rgb>,
+}
+
+impl TextureMeans {
+    /// Computes the mean of each texture. That of a product is the product of the means, as if nothing cut it.
+    pub fn new(scene: &Scene) -> TextureMeans {
+        let textures = &scene.textures;
+        let images: Vec<Rgb> = textures.par_iter().map(Texture::mean).collect();
+        let of_attribute = |AttributeTexture { attribute, image, .. }: &AttributeTexture| {
+            let of_image = image.and_then(|id| images.get(id.0 as usize)).copied();
+            scene.attribute_mean(*attribute) * of_image.unwrap_or(Rgb::ONE)
+        };
+        let attributes = textures.attributes().iter().map(of_attribute).collect();
+        TextureMeans { images, attributes }
+    }
+
+    /// Returns the mean of a texture; white if there is no such texture.
+    pub fn of(&self, id: TextureId) -> Rgb {
+        let found = self.images.get(id.0 as usize).or_else(|| self.attributes.get(id.attribute_number()?));
+        found.copied().unwrap_or(Rgb::ONE)
     }
 }
 

@@ -6,8 +6,7 @@
 //! All directions are turned to the side of the normal, unless the two sides are those of an interface.
 
 use super::lobe::{Facet, MAX_LOBES, SeenLobe, means};
-use super::lobe_set::LobeSet;
-use super::model::Model;
+use super::model::{LobeSet, Model};
 use base::math::{Lane, Mask, V3};
 use base::sampling::cosine_direction;
 use std::f32::consts::{FRAC_1_PI, PI};

@@ -1,8 +1,11 @@
-//! Functions of the angle to the normal, tabulated.
+//! Functions of the angle to the normal, tabulated, as the albedo of isotropic microfacets.
 
+use super::fresnel::Curve;
+use super::microfacet::Microfacets;
 use base::math::{Lane, Rgb, V3, gauss_legendre};
 use glam::Vec3;
 use rayon::prelude::*;
+use scene::Fresnel;
 use std::array;
 use std::ops::{Add, Mul, Sub};
 
@@ -65,4 +68,22 @@ pub(super) fn direction(i: usize) -> Vec3 {
 /// Returns nodes and weights of Gauss-Legendre quadrature on [0, 1].
 pub(super) fn rule(nodes: usize) -> Vec<(f32, f32)> {
     gauss_legendre(nodes).iter().map(|&(x, weight)| (x as f32, weight as f32)).collect()
+}
+
+/// Tabulates the albedo by angle.
+pub(super) fn albedo_table(facets: &Microfacets, fresnel: &Fresnel) -> AngleTable<Rgb> {
+    let rule = rule(32);
+    AngleTable::new(|wo| albedo(facets, fresnel, wo, &rule))
+}
+
+/// Integrates the share of the light from `wo`, in the xz plane, that single scattering on the facets reflects.
+pub(super) fn albedo(facets: &Microfacets, fresnel: &Fresnel, wo: Vec3, rule: &[(f32, f32)]) -> Rgb {
+    facets.mean_over_visible(wo, rule, |h| {
+        let cos = wo.dot(h);
+        let wi = 2.0 * cos * h - wo;
+        if cos <= 0.0 || wi.z <= 0.0 {
+            return Rgb::ZERO;
+        }
+        fresnel.reflectance(cos.min(1.0)) * (2.0 * wi.z * facets.v1(wi.z.min(1.0)))
+    })
 }

@@ -1,10 +1,9 @@
 //! Tables that materials of a scene share.
 
-use super::albedo::albedo_table;
 use super::base::RoughCoat;
 use super::lobe::{AnisotropicLobe, Grazing, GrazingKind};
 use super::microfacet::Microfacets;
-use super::table::AngleTable;
+use super::table::{AngleTable, albedo_table};
 use base::math::Rgb;
 use scene::Fresnel;
 use std::sync::Arc;

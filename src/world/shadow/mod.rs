@@ -8,13 +8,11 @@ mod cache;
 mod counts;
 mod engine;
 mod segment;
-mod settings;
 #[cfg(test)]
 mod tests;
 
-pub use cache::OccluderCacheSettings;
+pub use cache::{OccluderCacheSettings, ShadowSettings};
 pub use counts::ShadowCounts;
 pub use engine::Engine;
 pub use segment::{FAR_END, ULPS};
 pub use segment::{arriving, ray_from, segment, to_light};
-pub use settings::ShadowSettings;

@@ -11,12 +11,11 @@
 //! An interrupted image consists of complete passes of its tiles, and states the samples of each pixel. So it can be
 //! merged with others, and resumed ([`PartialImage`]).
 
-mod partial;
 mod pixels;
 mod render;
 mod tile;
 
-pub use partial::PartialImage;
 pub use pixels::{PixelPaths, PixelSampling, pixel_means};
 pub use render::Settings;
+pub use tile::PartialImage;
 pub use transport::paths::RayCounts;

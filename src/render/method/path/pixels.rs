@@ -1,6 +1,6 @@
 //! Single pixels, each with its own number of paths.
 
-use crate::method::sampled_pixels::{PILOT_SPP, SampledPixels};
+use crate::method::renderer::{PILOT_SPP, SampledPixels};
 use base::math::luminance;
 use base::parallel::ShortRuns;
 use base::progress::Control;

@@ -1,13 +1,11 @@
 //! The image: pixels in tiles, samples in passes.
 
-use super::partial::PartialImage;
 use super::pixels::sample_pixels;
-use super::tile::{PASS, PathTile, TILE, TileInputs};
+use super::tile::{PASS, PartialImage, PathTile, TILE, TileInputs};
 use crate::denoise::effort::Sampled;
 use crate::method::Output;
 use crate::method::lights::LightStore;
-use crate::method::renderer::{Renderer, Resumes};
-use crate::method::sampled_pixels::SampledPixels;
+use crate::method::renderer::{Renderer, Resumes, SampledPixels};
 use crate::method::sampling::method_settings;
 use crate::method::scale::{Move, PATHS};
 use crate::method::tally::Tally;

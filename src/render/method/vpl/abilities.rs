@@ -1,13 +1,12 @@
 //! Abilities of the method, which depend on its settings.
 
-use super::frame_inputs::FrameInputs;
+use super::film::FrameInputs;
 use super::settings::{IndirectSource, Neighbours};
 use super::{Preset, Settings};
 use crate::method::Output;
 use crate::method::lights::LightStore;
 use crate::method::photon_store::FoundCaustics;
-use crate::method::renderer::{FormerFrames, Renderer, Walks};
-use crate::method::sampled_pixels::{PILOT_SPP, SampledPixels};
+use crate::method::renderer::{FormerFrames, PILOT_SPP, Renderer, SampledPixels, Walks};
 use crate::method::sampling::HasSampling;
 use crate::method::scale::{CUTS, Demand, Move, SAMPLED};
 use crate::method::tally::Tally;

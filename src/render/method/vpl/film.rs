@@ -2,28 +2,33 @@
 //! reach.
 
 use super::Settings;
-use super::frame_inputs::FrameInputs;
 use super::gathering::by_origin;
-use super::resolve::resolve;
+use crate::calibration::PRICES;
 use crate::method::Output;
 use crate::method::lights::LightStore;
-use crate::method::prepared::{Preparation, Prepared};
+use crate::method::prepared::{LitSurfaces, Preparation, Prepared};
+use crate::method::renderer::FormerFrames;
 use crate::method::sampling::HasSampling;
 use crate::method::tally::Tally;
+use base::math::Rgb;
 use base::progress::Control;
 use base::stats::Stage;
-use transport::eye::{DirectSampling, EyePass};
+use transport::eye::{DirectSampling, EyePass, Settled};
+use transport::lights::Origin;
 use transport::perception::Thresholds;
 use transport::photon::indirect_light::{GatherCounts, IndirectLight};
 use transport::photon::records::FinalGatherSource;
 use transport::photon::strata::Strata;
+use transport::radiance_cache::compute::{LightcutSource, RecordSource};
 use transport::radiance_cache::fill::CacheFrame;
 use transport::radiance_cache::glossy::Glossy;
-use transport::radiance_cache::source::{LightcutSource, RecordSource};
+use transport::radiance_cache::resolve::{Interpolated, Remainder};
+use transport::radiance_cache::retained::RetainedRecords;
 use transport::radiance_cache::store::Records;
 use transport::radiance_cache::targets::Targets;
 use transport::radiance_cache::vantage::Vantage;
-use transport::shade::{ShadedImage, ShadingContext, ShadingCounts, ShadingTask};
+use transport::radiance_cache::{CacheSettings, CellLimits};
+use transport::shade::{Reflected, ShadedImage, ShadingContext, ShadingCounts, ShadingTask};
 use world::World;
 use world::view::View;
 
@@ -170,5 +175,117 @@ impl ShadedRest {
             tally.count("Gathering/rays followed", rays.followed);
             tally.count("Gathering/near surfaces", rays.near);
         }
+    }
+}
+
+/// Light of records at some points, and what is left to do.
+#[derive(Default)]
+struct Resolved {
+    light: Vec<Reflected>,
+    tasks: Vec<ShadingTask>,
+}
+
+impl Resolved {
+    /// Divides the light of a point.
+    fn add(&mut self, point: usize, light: &Interpolated) {
+        let &Interpolated { base, lobe, baseline_luminance, remainder } = light;
+        let lobe_origin = remainder.map(|part| part != Remainder::All).only();
+        let parts = Origin::ALL.map(|origin| (Some(origin), base[origin]));
+        for (origin, radiance) in parts.into_iter().chain([(lobe_origin, lobe)]) {
+            if radiance != Rgb::ZERO {
+                self.light.push(Reflected { point: point as u32, origin, radiance });
+            }
+        }
+        for (part, lobe_only) in [(Remainder::All, false), (Remainder::Lobe, true)] {
+            let remaining = remainder.map(|remainder| remainder == part);
+            if remaining.any() {
+                let (point, origin) = (point as u32, remaining.only());
+                self.tasks.push(ShadingTask { point, lobe_only, origin, baseline_luminance });
+            }
+        }
+    }
+}
+
+/// Adds the light of records to the image. Returns tasks for the light that they lack.
+///
+/// With `samples_direct`, the eye pass has found the direct light.
+pub fn resolve(
+    frame: &CacheFrame,
+    records: &Records,
+    eye: &EyePass,
+    samples_direct: bool,
+    image: &mut ShadedImage,
+) -> Vec<ShadingTask> {
+    let of_run = |points: &mut dyn Iterator<Item = (usize, Interpolated)>| {
+        let mut resolved = Resolved::default();
+        for (point, mut light) in points {
+            if samples_direct {
+                light.remainder.direct = Remainder::Nothing;
+                light.baseline_luminance += eye.known_luminance(point);
+            }
+            resolved.add(point, &light);
+        }
+        resolved
+    };
+    let mut tasks = Vec::new();
+    for runs in frame.interpolate(records, of_run) {
+        let (light, found): (Vec<_>, Vec<_>) = runs.into_iter().map(|run| (run.light, run.tasks)).unzip();
+        image.add(eye, &light, |light| *light);
+        tasks.extend(found.into_iter().flatten());
+    }
+    tasks
+}
+
+/// Inputs of an image, besides the settings.
+pub struct FrameInputs<'a> {
+    /// Settings of records.
+    pub cache: CacheSettings,
+    /// Cells that get a record.
+    pub cells: CellLimits,
+    /// Records of former frames; `None` for a still.
+    pub kept: Option<&'a mut RetainedRecords>,
+    /// Surfaces that virtual lights are made for.
+    pub lit: LitSurfaces<'a>,
+    /// True for a frame of a film, whose noise must not flicker and whose guides are computed before.
+    pub is_film: bool,
+    /// Pixels whose direct light is reprojected.
+    pub settled: Settled,
+    /// Visibility thresholds of the previous frame.
+    pub thresholds: Option<&'a Thresholds>,
+    /// Expected work besides the eye samples, in rays; unknown in a film, which has records already.
+    pub other_rays: Option<f64>,
+}
+
+impl<'a> FrameInputs<'a> {
+    /// Returns the inputs of a still.
+    pub fn still(settings: &Settings, view: &View) -> FrameInputs<'a> {
+        let pixels = view.window.film_pixel_count() as f64;
+        let (lights, lit) = match settings.gathers() {
+            true => (settings.gathering.photons, LitSurfaces::All),
+            false => (settings.light.indirect, LitSurfaces::InView),
+        };
+        FrameInputs {
+            cache: settings.cache,
+            cells: CellLimits::new(&settings.cache),
+            kept: None,
+            lit,
+            is_film: false,
+            settled: Settled::default(),
+            thresholds: None,
+            other_rays: Some(PRICES.rays_beside_samples(pixels, settings.spp.into(), lights.into())),
+        }
+    }
+
+    /// Returns the inputs of the next frame of a film, or of the next view of a list.
+    pub fn next(settings: &Settings, former: FormerFrames<'a>, view: &View) -> FrameInputs<'a> {
+        let FormerFrames { records, settled, thresholds, outlook } = former;
+        let still = FrameInputs { kept: Some(records), ..FrameInputs::still(settings, view) };
+        if let Some(outlook) = outlook {
+            let cells = CellLimits::of_views(&settings.cache, outlook.overlap, settings.cut.epsilon);
+            return FrameInputs { cells, lit: LitSurfaces::Seen(&outlook.points), ..still };
+        }
+        let cache = settings.cache.for_walk();
+        let (cells, lit) = (CellLimits::new(&cache), LitSurfaces::All);
+        FrameInputs { cache, cells, lit, is_film: true, settled, thresholds, other_rays: None, ..still }
     }
 }

@@ -46,12 +46,9 @@
 mod abilities;
 mod blocks;
 mod film;
-mod frame_inputs;
 mod gathering;
 mod preset;
-mod resolve;
 mod settings;
-mod tiles;
 
 pub use gathering::GatheringSettings;
 pub use preset::Preset;

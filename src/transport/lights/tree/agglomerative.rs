@@ -6,7 +6,7 @@
 //! coincident VPLs nor intensities in geometric progression stall the rounds.
 
 use super::cost::{DIMENSIONS, LUMINANCE, Primitive, PrimitiveBounds, cluster_cost};
-use super::topology::Topology;
+use super::node::Topology;
 use base::progress::Control;
 use rayon::prelude::*;
 

@@ -7,8 +7,8 @@
 //! members evaluates the splits of large clusters.
 
 use super::cost::{DIMENSIONS, LUMINANCE, Primitive, PrimitiveBounds, cluster_cost};
+use super::node::Topology;
 use super::partition::partition;
-use super::topology::Topology;
 use base::progress::Control;
 
 /// Number of bins per dimension.

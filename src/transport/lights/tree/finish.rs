@@ -6,8 +6,7 @@
 //! computed from the members, since merging the children's cones would be looser at every level.
 
 use super::cost::{Primitive, PrimitiveBounds};
-use super::node::LightNode;
-use super::topology::Topology;
+use super::node::{LightNode, Topology};
 use crate::lights::{Profiles, VplKind, VplSet};
 use base::math::{Rgb, luminance};
 use base::progress::Control;

@@ -11,7 +11,6 @@ mod node;
 mod partition;
 #[cfg(test)]
 mod tests;
-mod topology;
 
 use crate::lights::{Origin, Profiles, Vpl, VplSet};
 use base::progress::Control;

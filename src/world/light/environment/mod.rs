@@ -7,7 +7,6 @@
 //! tile. Emission of photons and virtual lights samples directions anew.
 
 mod discs;
-mod equal_cells;
 mod learned;
 mod map;
 mod presampled;
@@ -28,14 +27,13 @@ use super::observed::Observed;
 use base::math::{F32x16, LANES, Rgb, Vec2x16, Vec3x16, lanes_in, luminance};
 use base::sampling::uniform_sphere;
 use discs::Discs;
-use equal_cells::EqualCells;
 use glam::{Vec2, Vec3};
 use map::{Map, bilinear};
 use presampled::Presamples;
 use scene::{DistantDisc, Environment};
 use std::f32::consts::FRAC_1_PI;
 use table::TileTable;
-use tiles::{TilePlace, Tiles};
+use tiles::{EqualCells, TilePlace, Tiles};
 
 /// The environment with its sampling distributions.
 #[derive(Clone, Debug)]

@@ -1,4 +1,5 @@
-//! Two directions and the facet normal half-way between them, and bounds of that normal for a set of directions.
+//! Two directions and the facet normal half-way between them, and bounds of that normal for a set of directions;
+//! factors of a lobe that is seen from a direction.
 //!
 //! With c = cos θ_i and m = wi · (mirror direction of wo), wo · wi = 2 cos θ_o c - m. So the half-way normal h has cos²
 //! θ_h = (cos θ_o + c)² / (2 + 4 cos θ_o c - 2 m) and cos² (wo, h) = (1 + 2 cos θ_o c - m) / 2. The first grows with m
@@ -6,8 +7,7 @@
 //! Independently of c, the angle between n and h is at least half that between wi and the mirror direction, and the
 //! angle between wo and h is at most half the sum of the two inclinations.
 
-use super::DirectionBound;
-use base::math::{Lane, V3};
+use base::math::{Lane, Rgb, V3};
 
 /// Rounding error of a cosine or of a product of two. It matters for α below 0.01.
 const SLACK: f32 = 5e-7;
@@ -118,4 +118,56 @@ fn min_cos<L: Lane>(cos_o: L, cos_i_min: L, cos_mirror: L) -> L {
     let sin_product = (cos_o.sq().rest() * cos_i_min.sq().rest()).positive().sqrt();
     let cos_between = (product * 2.0 - cos_mirror).max(product - sin_product);
     (cos_between * 0.5 + L::from(0.5 - SLACK)).positive().sqrt()
+}
+
+/// Bounds of a set of directions towards light. The normal is on the side of `wo`: it is the reversed shading normal if
+/// a two-sided surface is seen from behind.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DirectionBound<L = f32> {
+    /// Maximum cosine to the normal. If it is <= 0, nothing is reflected.
+    pub cos_i_max: L,
+    /// Minimum cosine to the normal. If it is <= 0, grazing light is possible.
+    pub cos_i_min: L,
+    /// Maximum cosine to the mirror direction of `wo`.
+    pub cos_mirror_max: L,
+}
+
+impl DirectionBound {
+    /// Factor that covers the rounding of the reflectance and of D at the tip of a narrow lobe.
+    pub(in crate::material) const WIDER: f32 = 1.000_01;
+}
+
+/// Factors of a lobe that depend on the direction of view alone.
+#[derive(Clone, Copy)]
+pub(in crate::material) struct SeenLobe<L> {
+    /// Factor on the value.
+    pub masking: L,
+    /// Factor on the density.
+    pub density: L,
+}
+
+impl<L: Lane> SeenLobe<L> {
+    /// Returns the factors of a lobe that is not seen.
+    #[inline(always)]
+    pub fn none() -> SeenLobe<L> {
+        SeenLobe { masking: L::from(0.0), density: L::from(0.0) }
+    }
+
+    /// Returns the factors in all lanes of a wider type.
+    #[inline(always)]
+    pub fn widen<D: Lane + From<L>>(&self) -> SeenLobe<D> {
+        SeenLobe { masking: D::from(self.masking), density: D::from(self.density) }
+    }
+}
+
+/// Returns the mean of the channels.
+#[inline(always)]
+pub(in crate::material) fn mean(c: Rgb) -> f32 {
+    means(V3::splat(c))
+}
+
+/// Returns the means of the channels.
+#[inline(always)]
+pub(in crate::material) fn means<L: Lane>(c: V3<L>) -> L {
+    (c.x + c.y + c.z) * (1.0 / 3.0)
 }

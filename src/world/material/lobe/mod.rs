@@ -6,7 +6,6 @@
 
 mod anisotropic;
 mod clear_coat;
-mod direction_bound;
 mod dull;
 mod grazing;
 mod half_vector;
@@ -16,16 +15,15 @@ mod model;
 mod rough;
 mod rough_interface;
 mod sample;
-mod seen_lobe;
 mod shape;
 mod thin;
 
 pub(super) use anisotropic::AnisotropicLobe;
 pub(super) use clear_coat::ClearCoat;
-pub use direction_bound::DirectionBound;
 pub use dull::DullLobe;
 pub(super) use grazing::{Grazing, GrazingKind};
-pub(super) use half_vector::{Facet, FacetBound};
+pub use half_vector::DirectionBound;
+pub(super) use half_vector::{Facet, FacetBound, SeenLobe, mean, means};
 pub(super) use interface::{Interface, Passage};
 pub(super) use mirror::Mirror;
 pub(super) use model::{LobeModel, MAX_LOBES};
@@ -33,6 +31,5 @@ pub(super) use rough::{DIFFUSE_ALPHA, RoughLobe};
 pub(super) use rough_interface::RoughInterface;
 pub use sample::BsdfSample;
 pub(super) use sample::Delta;
-pub(super) use seen_lobe::{SeenLobe, mean, means};
 pub use shape::{LobeShape, ReflectedLobe};
 pub(super) use thin::{Thin, ThinFacets};
