@@ -6,7 +6,7 @@
 
 use super::World;
 use crate::material::LastStraight;
-use base::math::{Rgb, lanes_in};
+use base::math::{Rgb, Vec3x16, lanes_in};
 use embree::{Hit, Ray, Rays16};
 use glam::{Vec2, Vec3};
 
@@ -159,17 +159,22 @@ impl World {
         })
     }
 
-    /// Calls `through` with each lane of `lanes` and its [`World::transmittance_of`], if there are sheets.
+    /// Multiplies the `light` along the segments in `lanes` by [`World::transmittance_of`], 0 if `most` is `None`.
     #[inline]
-    pub fn transmittance16(
+    pub fn attenuate(
         &self,
         segments: &Rays16,
         lanes: u16,
-        most: u32,
-        mut through: impl FnMut(usize, Rgb),
+        most: impl Fn(usize) -> Option<u32>,
+        light: &mut Vec3x16,
     ) {
-        if self.has_sheets() {
-            lanes_in(lanes).for_each(|lane| through(lane, self.transmittance_of(&segments.get(lane), most)));
+        if !self.has_sheets() {
+            return;
+        }
+        for lane in lanes_in(lanes) {
+            let passed =
+                most(lane).map_or(Rgb::ZERO, |most| self.transmittance_of(&segments.get(lane), most));
+            light.set(lane, light.get(lane) * passed);
         }
     }
 }

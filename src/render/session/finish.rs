@@ -1,7 +1,8 @@
 //! The stages after the method: features as further layers, denoising, and sharpening for filters with negative lobes.
 
 use super::goal::Goal;
-use crate::cost::{PRICES, ScenePrices};
+use crate::calibration::PRICES;
+use crate::cost::ScenePrices;
 use crate::denoise::{DenoiseError, Denoiser, Guides, NOISY, Quality, effort};
 use crate::method::{LightStore, Method, Output};
 use crate::plan::smaller;

@@ -1,6 +1,6 @@
 //! Random points, materials and virtual lights for tests of cuts.
 
-use super::{CutSettings, Receiver, ReceiverPacket, Visibility};
+use super::{CutSettings, ReceiverPacket};
 use crate::lightcut::{Receiver, Transfer, Visibility, to_vpl};
 use crate::lights::{Family, LightTrees, LobeProfile, Origin, Profiles, SpotProfile, Vpl, VplKind, VplSet};
 use base::math::{Frame, Rgb, V3, Vec3x16, lanes_in};
@@ -212,15 +212,15 @@ pub fn alone<'m>(receiver: Receiver<'m>) -> ReceiverPacket<'m> {
 
 /// Gathers the light of all VPLs at `receiver`, without clamping.
 pub fn gather_all<V: Visibility>(transfer: &Transfer, visibility: &V, receiver: &Receiver) -> Rgb {
-    let (x, normal) = (receiver.position(), receiver.geometric_normal());
+    let [x, normal] = [receiver.position(), receiver.geometric_normal()].map(V3::<f32>::splat);
     let (mut rays, mut sum) = (Rays16::default(), DVec3::ZERO);
     for leaf in transfer.trees.leaves() {
         let (vpl, before) = transfer.trees.representative(leaf);
         let contribution = leaf.intensity * transfer.unshadowed(receiver, vpl, leaf.kind());
-        rays.set(0, &to_vpl(x, normal, vpl, leaf.kind()));
+        rays.set(0, &to_vpl(x, normal, vpl, leaf.kind()).into());
         if contribution != Rgb::ZERO && visibility.visible16(&rays, 1, None) != 0 {
             let mut light = Vec3x16::splat(contribution);
-            visibility.attenuate16(&rays, 1, |_| receiver.sheets(before), &mut light);
+            visibility.attenuate(&rays, 1, |_| receiver.sheets(before), &mut light);
             sum += light.get(0).as_dvec3();
         }
     }

@@ -22,7 +22,6 @@ pub mod packet;
 mod receiver;
 pub mod reconstruction;
 mod settings;
-mod shadow_rays;
 #[cfg(test)]
 mod tests;
 mod transfer;
@@ -39,6 +38,5 @@ pub use packet::{
 pub use receiver::Receiver;
 pub use reconstruction::ReconstructionCut;
 pub use settings::{CutCounts, CutSettings};
-pub use shadow_rays::{to_vpl, to_vpl16};
 pub use transfer::Transfer;
-pub use visibility::Visibility;
+pub use visibility::{Visibility, to_vpl};

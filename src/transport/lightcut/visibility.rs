@@ -1,9 +1,10 @@
-//! Visibility of virtual lights.
+//! Visibility of virtual lights. Only this file distinguishes kinds of VPLs for shadow rays.
 
-use base::math::{Rgb, Vec3x16, lanes_in};
+use crate::lights::{Vpl, VplKind};
+use base::math::{Lane, V3, Vec3x16};
 use embree::Rays16;
 use world::World;
-use world::shadow::Engine;
+use world::shadow::{Engine, Segment};
 
 /// Visibility along rays from points to VPLs.
 pub trait Visibility {
@@ -18,18 +19,22 @@ pub trait Visibility {
     /// Multiplies the `light` along the rays in `lanes`, which are not occluded, by the transmittance of the thin
     /// sheets on its way. It is 0 if there are more than `most` sheets, or if `most` is `None` (see
     /// [`super::Receiver::sheets`]).
-    fn attenuate16(
-        &self,
-        rays: &Rays16,
-        lanes: u16,
-        most: impl Fn(usize) -> Option<u32>,
-        light: &mut Vec3x16,
-    ) {
-        let Some(world) = self.sheets() else { return };
-        for lane in lanes_in(lanes) {
-            let passed = most(lane).map_or(Rgb::ZERO, |most| world.transmittance_of(&rays.get(lane), most));
-            light.set(lane, light.get(lane) * passed);
+    fn attenuate(&self, rays: &Rays16, lanes: u16, most: impl Fn(usize) -> Option<u32>, light: &mut Vec3x16) {
+        if let Some(world) = self.sheets() {
+            world.attenuate(rays, lanes, most, light);
         }
+    }
+}
+
+/// Returns the rays to a VPL from points `x` with geometric normals `normal`, which are zero for points that lie on no
+/// surface. Rays start at the points, since a packet that fans out from the light would lose hits.
+#[inline]
+pub fn to_vpl<L: Lane>(x: V3<L>, normal: V3<L>, vpl: &Vpl, kind: VplKind) -> Segment<L> {
+    let light = V3::splat(vpl.position);
+    match kind {
+        VplKind::Oriented => Segment::between(x, normal, light, V3::splat(vpl.normal())),
+        VplKind::Omni | VplKind::Lobed => Segment::between(x, normal, light, V3::zero()),
+        VplKind::Directional => Segment::from(x, normal, light),
     }
 }
 

@@ -307,9 +307,7 @@ impl Batch {
         counts.shadow_rays += count as u64;
         let valid = first_lanes(count);
         let free = valid & !world.accel.occluded16(&outward.rays, valid, false);
-        let throughput = &mut outward.emission_throughput;
-        let attenuate = |lane, share| throughput.set(lane, throughput.get(lane) * share);
-        world.transmittance16(&outward.rays, free, sheets, attenuate);
+        world.attenuate(&outward.rays, free, |_| Some(sheets), &mut outward.emission_throughput);
         self.escape(world, &outward, free, policy);
         self.outward.0 = outward;
     }

@@ -67,8 +67,7 @@ impl FoundLight<'_> {
         let ShadowPacket { rays, radiance, slot } = packet;
         self.counts.shadow_rays += u64::from(lanes.count_ones());
         let free = lanes & !self.world.accel.occluded16(rays, lanes, self.coherent);
-        let attenuate = |lane, share| radiance.set(lane, radiance.get(lane) * share);
-        self.world.transmittance16(rays, free, self.sheets, attenuate);
+        self.world.attenuate(rays, free, |_| Some(self.sheets), radiance);
         for lane in lanes_in(free) {
             self.radiance[slot[lane] as usize] += radiance.get(lane);
         }

@@ -14,5 +14,4 @@ mod tests;
 pub use cache::{OccluderCacheSettings, ShadowSettings};
 pub use counts::ShadowCounts;
 pub use engine::Engine;
-pub use segment::{FAR_END, ULPS};
-pub use segment::{arriving, ray_from, segment, to_light};
+pub use segment::{Segment, arriving, ray_from, segment, to_light};

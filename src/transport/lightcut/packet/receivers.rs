@@ -1,6 +1,6 @@
 //! Receivers of a packet, lane by lane.
 
-use crate::lightcut::{Receiver, Visibility, to_vpl16};
+use crate::lightcut::{Receiver, Visibility, to_vpl};
 use crate::lights::{LightNode, LightTrees, Vpl, VplKind};
 use base::math::{F32x16, Frame, LANES, LUMINANCE, Rgb, V3, Vec3x16, f32x16, first_lanes, lanes_in};
 use embree::Rays16;
@@ -83,7 +83,7 @@ impl<'m> ReceiverPacket<'m> {
     /// Returns the rays to a VPL, in all lanes.
     #[inline]
     pub fn shadow_rays(&self, vpl: &Vpl, kind: VplKind) -> Rays16 {
-        to_vpl16(&self.position, &self.geometric_normal, vpl, kind)
+        to_vpl(self.position.load(), self.geometric_normal.load(), vpl, kind).into()
     }
 
     /// Returns the lanes of `lanes` that see the VPL, which represents `node`.
@@ -107,7 +107,7 @@ impl<'m> ReceiverPacket<'m> {
         if visibility.sheets().is_some() {
             let (vpl, before) = trees.representative(node);
             let rays = self.shadow_rays(vpl, node.kind());
-            visibility.attenuate16(&rays, lanes, |lane| self.get(lane).sheets(before), light);
+            visibility.attenuate(&rays, lanes, |lane| self.get(lane).sheets(before), light);
         }
     }
 

@@ -71,7 +71,7 @@ impl Pending {
         counts.rays += count as u64;
         counts.packets += 1;
         let free = visibility.visible16(&self.rays, first_lanes(count), None);
-        visibility.attenuate16(&self.rays, free, |i| self.sheets[i], &mut self.light);
+        visibility.attenuate(&self.rays, free, |i| self.sheets[i], &mut self.light);
         for i in lanes_in(free) {
             let (factor, geometry) = (self.factors[i], self.geometries[i]);
             let sample = Sample { light: self.light.get(i), factor, geometry };

@@ -239,7 +239,8 @@ impl SampledCut {
                 if response == Rgb::ZERO {
                     continue;
                 }
-                let ray = to_vpl(receiver.position(), receiver.geometric_normal(), vpl, node.kind());
+                let [x, normal] = [receiver.position(), receiver.geometric_normal()].map(V3::<f32>::splat);
+                let ray = to_vpl(x, normal, vpl, node.kind()).into();
                 let (x, normal) = receiver.place();
                 let (x, normal) = (V3::<f32>::splat(x), V3::splat(normal));
                 let geometry = match node.origin() {
