@@ -17,6 +17,9 @@ use crate::lights::{DirectIndirect, Origin};
 use base::math::{Rgb, luminance};
 use rayon::prelude::*;
 
+/// Minimum relative difference of luminance that counts as visible.
+const VISIBLE: f32 = 0.02;
+
 /// Record whose light visibly ends or begins at a sample.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Discontinuity {
@@ -37,12 +40,11 @@ struct Contribution {
 }
 
 /// Finds all discontinuities, leaf by leaf. A difference counts if it exceeds the visible difference at the sample. If
-/// that is unknown, it counts if it exceeds the share `threshold` of the luminance.
+/// that is unknown, it counts if it exceeds the share [`VISIBLE`] of the luminance.
 pub fn discontinuities(
     targets: &Targets,
     records: &Records,
     splats: &DirectIndirect<Splat>,
-    threshold: f32,
 ) -> Vec<Discontinuity> {
     let by_leaf: Vec<Vec<Discontinuity>> = (0..targets.index.leaves())
         .into_par_iter()
@@ -61,7 +63,7 @@ pub fn discontinuities(
                 );
                 let visible = |origin, record| Discontinuity { origin, record, sample: sample as u32 };
                 let limit = targets.visible(sample);
-                judge(contributions, limit, threshold, |origin, record| found.push(visible(origin, record)));
+                judge(contributions, limit, VISIBLE, |origin, record| found.push(visible(origin, record)));
             }
             found
         })
@@ -204,7 +206,7 @@ mod tests {
         let mut splats = records.as_ref().map(|store| Splat::new(&targets, store));
         let mut settings = CacheSettings::default();
         settings.reach[0][0] = 0.01;
-        let found = discontinuities(&targets, &records, &splats, 0.02);
+        let found = discontinuities(&targets, &records, &splats);
         assert!(!found.is_empty());
         let before = records.direct.records.clone();
         for d in &found {
@@ -222,7 +224,7 @@ mod tests {
         assert_eq!(splats.direct.sums, Splat::new(&targets, &records.direct).sums);
         assert!(changed.contains(&true) && changed.contains(&false));
         // Nothing is left to see.
-        assert_eq!(discontinuities(&targets, &records, &splats, 0.02), []);
+        assert_eq!(discontinuities(&targets, &records, &splats), []);
     }
 
     #[test]

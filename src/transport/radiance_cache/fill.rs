@@ -116,8 +116,7 @@ impl<'a> CacheFrame<'a> {
     /// Shrinks footprints at visible discontinuities; returns false if there are none.
     fn adapt(&mut self, records: &mut Records, settings: &CacheSettings, stats: &mut Stats) -> bool {
         stats.time(Stage::Splat, || {
-            let threshold = settings.threshold;
-            let found = adapt::discontinuities(&self.targets, records, &self.splats, threshold);
+            let found = adapt::discontinuities(&self.targets, records, &self.splats);
             let changed = adapt::shrink(&self.targets, records, &found, settings);
             for origin in Origin::ALL {
                 self.splats[origin].renew(&self.targets, &records[origin], &changed);

@@ -70,12 +70,7 @@ pub fn record(position: Vec3, radii: [f32; 2], irradiance: Rgb) -> Record {
         coat: 0,
         edge_class: edge_class(u16::MAX),
         bands: 0,
-        footprint: Footprint {
-            axes: [Vec3::X, Vec3::Y],
-            radii,
-            unraised: radii,
-            inverse_normal_tolerance: 2.5,
-        },
+        footprint: Footprint { axes: [Vec3::X, Vec3::Y], radii, unraised: radii },
         vector: Mat3::from_cols(Vec3::Z * irradiance.x, Vec3::Z * irradiance.y, Vec3::Z * irradiance.z),
         gradient: Mat3::ZERO,
         luminance: luminance(irradiance),

@@ -39,8 +39,6 @@ pub struct Footprint {
     pub radii: [f32; 2],
     /// Radius along each axis without the minimum set by the spacing of eye samples.
     pub unraised: [f32; 2],
-    /// Inverse of √(1 - cos) of the maximum angle between normals.
-    pub inverse_normal_tolerance: f32,
 }
 
 /// Derivatives of the irradiance over the surface.
@@ -82,7 +80,7 @@ impl Footprint {
     /// accuracy, relative to it. Radii do not exceed the accuracy times the distance, nor the longer one `MAX_ASPECT`
     /// times the shorter.
     pub fn from_hessian(light: &Derivatives, luminance: f32, limits: &FootprintLimits) -> Footprint {
-        let FootprintLimits { settings, accuracy, distance, radii: [min, max] } = *limits;
+        let FootprintLimits { accuracy, distance, radii: [min, max], .. } = *limits;
         let furthest = accuracy * distance;
         let radius = |curvature: f32| {
             let inverse_sq = curvature / (luminance.max(f32::MIN_POSITIVE) * accuracy * accuracy);
@@ -92,12 +90,7 @@ impl Footprint {
         let unraised = [short, long.min(MAX_ASPECT * short)];
         let short = within(short, [min, max]);
         let long = within(long.min(MAX_ASPECT * short), [short, max]);
-        Footprint {
-            axes: light.axes,
-            radii: [short, long],
-            unraised,
-            inverse_normal_tolerance: 1.0 / settings.normal_tolerance,
-        }
+        Footprint { axes: light.axes, radii: [short, long], unraised }
     }
 
     /// Returns the ellipse from gradients, short along the gradient of the luminance. Its area is that of a circle
@@ -123,7 +116,6 @@ impl Footprint {
             axes: [axis, normal.cross(axis)],
             radii: [radius * squeeze, radius / squeeze],
             unraised: [unraised * squeeze, unraised / squeeze],
-            inverse_normal_tolerance: 1.0 / settings.normal_tolerance,
         }
     }
 
@@ -206,7 +198,6 @@ mod tests {
             assert!(change == 0.0 || along.dot(Vec3::new(0.6, 0.8, 0.0)) > 0.999_99);
             assert!(along.dot(across).abs() < 1e-6 && across.dot(Vec3::Z).abs() < 1e-6);
             assert_near(across.length(), 1.0);
-            assert_near(ellipse.inverse_normal_tolerance, 2.5);
         }
         let steep = Footprint::from_gradient(Vec3::Z, Vec3::X * 1e9, 2.0, &limits(&anisotropic, [0.1, 9.0]));
         assert_near(steep.radii[1] / steep.radii[0], 1.0 / 0.09);
@@ -277,8 +268,7 @@ mod tests {
     #[test]
     fn offsets_are_scaled_by_the_radii_and_five_times_as_much_along_the_normal() {
         let radii = [2.0, 0.5];
-        let footprint =
-            Footprint { axes: [Vec3::X, Vec3::Y], radii, unraised: radii, inverse_normal_tolerance: 1.0 };
+        let footprint = Footprint { axes: [Vec3::X, Vec3::Y], radii, unraised: radii };
         assert_eq!(footprint.scaled(Vec3::new(3.0, 3.0, 3.0), Vec3::Z), Vec3::new(1.5, 6.0, 30.0));
         assert_eq!(footprint.max_radius(), 2.0);
     }

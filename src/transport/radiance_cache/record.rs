@@ -15,8 +15,8 @@ use base::math::{Rgb, luminance};
 use glam::{Mat3, Vec3};
 use serde::{Deserialize, Serialize};
 
-/// Maximum sine of the angle by which a point may lie behind the plane of a record that lights it.
-const BEHIND: f32 = 0.1;
+/// Maximum angle between the normal of a record and the normal of a lit point, as √(1 - cos).
+const NORMAL_TOLERANCE: f32 = 0.4;
 
 /// Maximum ratio of the extrapolated luminance to the record's own, in either direction.
 const EXTRAPOLATION: f32 = 3.0;
@@ -80,21 +80,18 @@ impl Record {
     /// apply. `bands` is the number of bands that the surface there needs.
     #[inline]
     pub fn delta(&self, p: &PointGeometry, bands: u8) -> f32 {
-        let offset = p.position - self.position;
         let tilt = self.tilt(p);
         let is_alike = self.coat == u32::from(p.coat) && self.edge_class == edge_class(p.edges);
         if !(tilt < 1.0) || !is_alike || self.bands < bands {
             return f32::INFINITY;
         }
-        let delta = self.footprint.scaled(offset, self.normal).length() + tilt;
-        let behind = 0.5 * offset.dot(self.normal + p.normal) < -BEHIND * offset.length();
-        if behind && delta > MIN_DELTA { f32::INFINITY } else { delta }
+        self.footprint.scaled(p.position - self.position, self.normal).length() + tilt
     }
 
     /// Returns the part of δ due to the angle between the normals.
     #[inline]
     fn tilt(&self, p: &PointGeometry) -> f32 {
-        (1.0 - self.normal.dot(p.normal)).max(0.0).sqrt() * self.footprint.inverse_normal_tolerance
+        (1.0 - self.normal.dot(p.normal)).max(0.0).sqrt() / NORMAL_TOLERANCE
     }
 
     /// Returns weight and extrapolated irradiance at a point, or `None` outside the footprint or if the extrapolation
@@ -171,8 +168,8 @@ mod tests {
     fn weights_fall_with_the_angle_between_normals() {
         let record = record(Vec3::ZERO, [2.0, 1.0], Rgb::ONE);
         let tilted = |delta: f32| {
-            // δ = (1 - cos)½ / 0.4
-            let cos = 1.0 - (delta * 0.4).powi(2);
+            // δ = (1 - cos)½ / tolerance
+            let cos = 1.0 - (delta * NORMAL_TOLERANCE).powi(2);
             let normal = Vec3::new((1.0 - cos * cos).sqrt(), 0.0, cos);
             PointGeometry { normal, ..point(Vec3::ZERO) }
         };
@@ -180,15 +177,6 @@ mod tests {
         let moved = PointGeometry { position: Vec3::Y * 0.3, ..tilted(0.5) };
         assert_near(record.at(&moved, 0).unwrap().0, 1.0 / 0.8 - 1.0, 1e-3);
         assert_eq!(record.delta(&tilted(1.01), 0), f32::INFINITY);
-    }
-
-    #[test]
-    fn points_behind_a_record_are_not_lit() {
-        let record = record(Vec3::ZERO, [2.0, 1.0], Rgb::ONE);
-        let at_sine = |sine: f32| point(Vec3::new((1.0 - sine * sine).sqrt(), 0.0, sine) * 0.1);
-        assert!(record.at(&at_sine(0.95 * -BEHIND), 0).is_some());
-        assert_eq!(record.delta(&at_sine(1.05 * -BEHIND), 0), f32::INFINITY);
-        assert!(record.at(&at_sine(1.05 * BEHIND), 0).is_some());
     }
 
     #[test]

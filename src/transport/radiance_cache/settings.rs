@@ -86,12 +86,8 @@ settings! {
         /// Relative change of luminance across an anisotropic footprint that halves it along the gradient (the paper's
         /// μ).
         mu: f32 = 0.5 => [.heading(PAPER).positive().scaled(&DOWN).with(&[("footprints", "anisotropic")])];
-        /// Maximum angle between the normal of a record and the normal of a lit point, as √(1 - cos).
-        normal_tolerance: f32 = 0.4 => [.heading(PAPER).positive().scaled(&[2.0, 1.0, 0.5])];
         /// Maximum number of passes that shrink footprints at visible seams.
         passes: u32 = 1 => [.heading(PAPER).values(&["0", "1", "2", "5"])];
-        /// Minimum relative difference of luminance that counts as visible.
-        threshold: f32 = 0.02 => [.heading(PAPER).fraction().scaled(&DOWN)];
         /// Minimum number of eye samples in a cell of the kd-tree that gets a record. Smaller cells use cuts or final
         /// gathering.
         least_cell: u32 = 256 => [.at_least(1.0).scaled(&UP)];
