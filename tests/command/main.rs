@@ -117,8 +117,8 @@ impl Finished {
 fn few_lights(method: &str) -> &'static [&'static str] {
     match method {
         "path" => &[],
-        "photon-cache" => &["--photons", "20000", "--gather-rays", "64"],
-        _ => &["--vpls", "2000", "--direct-vpls", "256"],
+        "photon-cache" => &["--set", "photons=20000", "--set", "gather-rays=64"],
+        _ => &["--set", "vpls=2000", "--set", "direct-vpls=256"],
     }
 }
 
