@@ -99,7 +99,9 @@ mod tests {
         assert!(text.len() < 150 && !text.contains("record-epsilon"), "{text}");
         let mut again = base;
         for option in text.split("--").skip(1) {
-            let (option, value) = option.trim().split_once(' ').unwrap();
+            let option = option.trim();
+            let (option, value) =
+                option.strip_prefix("set ").unwrap_or(option).split_once([' ', '=']).unwrap();
             assert_eq!(again.set(&option.replace('-', "_"), value), Ok(true), "{option} {value}");
         }
         assert_eq!(again.settings(), found.settings());
