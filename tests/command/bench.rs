@@ -89,8 +89,12 @@ fn the_study_of_growth_tells_time_by_pixels_and_error_by_lamps() {
     };
     assert_eq!(values(0, "value"), [16.0, 64.0, 256.0, 1024.0, 4096.0]);
     assert_eq!(values(1, "value"), [10.0, 100.0, 1000.0, 10_000.0]);
-    // Small lamps that a pixel sees give it an error of more than its mean.
-    assert!(values(1, "error").iter().all(|error| *error > 0.0 && *error < 10.0));
+    // Thousands of lamps in a film of 16x16 are seen by most pixels, whose errors exceed their means.
+    let errors = values(1, "error");
+    assert!(
+        errors.iter().all(|error| *error > 0.0) && errors[..2].iter().all(|error| *error < 1.0),
+        "{errors:?}"
+    );
     assert_eq!([&json["threads"][0]["threads"], &json["threads"][0]["speed_up"]], [1.0, 1.0]);
     assert!(values(0, "whole").iter().zip(values(0, "eye_pass")).all(|(whole, part)| *whole > part));
 }

@@ -83,17 +83,17 @@ fn errors_of_the_last_frame(seed: u32) -> [f32; 2] {
     [error, error_alone]
 }
 
-/// The ratio of the errors of single seeds is between 0.9 and 1.2, so that of five has a standard error of 0.04.
+/// The ratio of the errors of single seeds is between 0.9 and 1.2.
 #[test]
 fn frames_of_a_walk_are_as_right_as_alone_with_few_new_records() {
     let (mut error, mut error_alone) = (0.0, 0.0);
-    for seed in 0..5 {
+    for seed in 0..8 {
         let [walked, alone] = errors_of_the_last_frame(seed);
         error += walked;
         error_alone += alone;
     }
-    // A decibel, and a standard error.
-    assert!(error < 1.16 * error_alone, "error {error}, alone {error_alone}");
+    // A decibel.
+    assert!(error < 1.12 * error_alone, "error {error}, alone {error_alone}");
 }
 
 #[test]

@@ -14,9 +14,7 @@ use lightsplat::method::Method;
 use std::ops::Range;
 
 /// Numbers of seeds of each picture: at first, and of those that seem to be wrong by the ones before.
-///
-/// Two seeds tell what is beyond the tolerance: their standard errors are a third of it and less.
-const SEEDS: [u32; 3] = [2, 40, 400];
+const SEEDS: [u32; 3] = [4, 40, 400];
 /// Deviation in standard errors from which on more seeds are taken, and by the most seeds is a defect.
 const MAX_DEVIATION: f64 = 5.0;
 /// Difference relative to the picture that is none: rounding, and what depends on the order of surfaces.
@@ -98,7 +96,7 @@ struct Difference {
 
 impl Difference {
     /// Differences are taken seed by seed: what noise the pictures share cancels.
-    fn new(pairs: &[Pair], tolerance: f64) -> Difference {
+    fn of(pairs: &[Pair], tolerance: f64) -> Difference {
         let count = pairs.len() as f64;
         let mean_of = |value: &dyn Fn(&Pair) -> f64| pairs.iter().map(value).sum::<f64>() / count;
         let parts: [(f64, f64, f64); 5] = std::array::from_fn(|part| {
@@ -140,7 +138,7 @@ impl Found {
         let (mut first, mut deviation, mut of_whole) = (0, 0.0, f64::NAN);
         for (stage, seeds) in SEEDS.into_iter().enumerate() {
             let pairs: Vec<Pair> = (first..first + seeds).map(&pair).collect();
-            let difference = Difference::new(&pairs, tolerance);
+            let difference = Difference::of(&pairs, tolerance);
             self.tried[stage] += 1;
             if let (0, Some(relative)) = (stage, difference.relative) {
                 self.relative.push(relative);
