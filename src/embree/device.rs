@@ -1,9 +1,8 @@
-//! The Embree device: version check and error messages. Tasks of Embree, and the end of the process while they run.
+//! The Embree device: version check and error messages.
 
 use super::{EmbreeError, Version, Width};
 use embree4_sys as sys;
-use libloading::os::unix::{Library, Symbol};
-use std::ffi::{CStr, CString, c_char, c_int, c_void};
+use std::ffi::{CStr, CString, c_char, c_void};
 use std::fmt;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
@@ -170,28 +169,4 @@ unsafe fn text(string: *const c_char) -> String {
     }
     // SAFETY: not null, the rest by contract.
     unsafe { CStr::from_ptr(string) }.to_string_lossy().into_owned()
-}
-
-/// Returns the version of TBB that Embree has loaded; `None` if Embree was built with other tasks.
-pub fn tbb_version() -> Option<String> {
-    // SAFETY: oneTBB declares `const char* TBB_runtime_version(void)` since 2021.1.
-    let version: Symbol<unsafe extern "C" fn() -> *const c_char> =
-        unsafe { Library::this().get(b"TBB_runtime_version\0") }.ok()?;
-    // SAFETY: the function takes nothing and returns a constant text that ends in NUL.
-    let text = unsafe { CStr::from_ptr(version()) };
-    Some(text.to_string_lossy().into_owned())
-}
-
-unsafe extern "C" {
-    /// Ends the process without running exit handlers (POSIX).
-    fn _exit(status: c_int) -> !;
-}
-
-/// Ends the process at once.
-///
-/// [`std::process::exit`] would let libraries free data that their threads still use, in a build or in denoising. This
-/// sometimes corrupted the heap.
-pub fn leave(code: u8) -> ! {
-    // SAFETY: takes any status and has no other conditions; all memory stays as it is until the process is gone.
-    unsafe { _exit(code.into()) }
 }

@@ -1,4 +1,4 @@
-//! Packets of sixteen rays and their hits, and widths of queries.
+//! Packets of sixteen rays and their hits.
 
 use super::{Hit, Ray};
 use base::math::Vec3x16;
@@ -179,34 +179,6 @@ impl Hits16 {
             self.v[i] = if copied { self.v[from] } else { self.v[i] };
             self.geometry[i] = if copied { self.geometry[from] } else { self.geometry[i] };
             self.primitive[i] = if copied { self.primitive[from] } else { self.primitive[i] };
-        }
-    }
-}
-
-/// Number of rays per query.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Width {
-    /// One ray: `rtcOccluded1`.
-    One,
-    /// Four rays: `rtcOccluded4`.
-    Four,
-    /// Eight rays: `rtcOccluded8`.
-    Eight,
-    /// Sixteen rays: `rtcOccluded16`.
-    Sixteen,
-}
-
-impl Width {
-    /// All widths, in ascending order.
-    pub const ALL: [Width; 4] = [Width::One, Width::Four, Width::Eight, Width::Sixteen];
-
-    /// Returns the number of rays.
-    pub fn rays(self) -> usize {
-        match self {
-            Width::One => 1,
-            Width::Four => 4,
-            Width::Eight => 8,
-            Width::Sixteen => 16,
         }
     }
 }

@@ -4,7 +4,8 @@
 //! bytes per place. Embree would build one geometry per place otherwise, of about eight times as many.
 
 use super::numbers::{GroupNumbers, PlacedNumbers};
-use super::raw_scene::{BuildQuality, RawScene};
+use super::quality::BuildQuality;
+use super::raw_scene::RawScene;
 use super::ray::ALL_GEOMETRY;
 use super::triangles::TriangleMesh;
 use super::{Device, EmbreeError};

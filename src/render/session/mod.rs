@@ -3,19 +3,25 @@
 //! The session holds all that frames share. A [`Goal`] sets how a frame is rendered, what its settings are planned for,
 //! and how its error is measured. A [`RenderedFrame`] holds the image and all that is reported about it.
 
+mod context;
+mod error;
 mod finish;
+mod finishing_time;
+mod former;
 mod frame;
 mod frame_report;
 mod goal;
 mod next_frame;
+mod notes;
 mod planned;
 mod render;
 mod report;
 
+pub use error::FrameError;
 pub use finish::Finish;
-pub use frame::{FrameError, Remark, RenderedFrame};
+pub(crate) use former::{Former, VisibleDifferences, WalkState};
+pub use frame::{Remark, RenderedFrame};
 pub use goal::{ErrorLimit, Goal, PlanGoal, TimeGoal};
-pub(crate) use next_frame::{Former, VisibleDifferences, WalkState};
 
 pub use transport::eye::{Averaging, Feature, Features, UnknownFeature};
 

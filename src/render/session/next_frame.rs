@@ -1,12 +1,11 @@
-//! The next frame of a walk, and the results of former frames on which it builds.
+//! The next frame of a walk.
 
-use super::finish::FrameContext;
-use crate::method::path::PartialImage;
-use crate::method::{FormerFrames, Method, Outlook, Output, RetainedRecords};
+use super::context::FrameContext;
+use super::former::{VisibleDifferences, WalkState};
+use crate::method::{FormerFrames, Method, Output};
 use base::stats::{Stage, Stopwatch};
 use transport::eye::Settled;
-use transport::perception::Thresholds;
-use transport::reprojection::{PreviousImage, Reprojected};
+use transport::reprojection::Reprojected;
 
 /// Renders and finishes the next frame of a walk, and updates its state.
 ///
@@ -49,34 +48,4 @@ pub fn next_frame(context: &FrameContext, method: &Method, state: WalkState) -> 
     }
     finish.sharpen(&mut output);
     output
-}
-
-/// Results of former renders.
-pub(crate) enum Former<'a> {
-    /// No results.
-    Nothing,
-    /// The previous frames of a walk.
-    Frames(WalkState<'a>),
-    /// An interrupted image of the same goal.
-    Samples(PartialImage),
-}
-
-/// State of a walk, which a frame reads and updates.
-pub struct WalkState<'a> {
-    /// Records of indirect light.
-    pub records: &'a mut RetainedRecords,
-    /// The previous image, if sampled light is reprojected from it.
-    pub last: Option<&'a mut PreviousImage>,
-    /// Visibility thresholds of the previous image, if records are adapted to them.
-    pub thresholds: Option<VisibleDifferences<'a>>,
-    /// Surfaces that all views see, if the frames are views of a list.
-    pub outlook: Option<&'a Outlook>,
-}
-
-/// Visibility thresholds of the previous image, and how the next ones are made.
-pub struct VisibleDifferences<'a> {
-    /// The thresholds.
-    pub thresholds: &'a mut Thresholds,
-    /// Scale of the quantisation.
-    pub q_scale: f32,
 }

@@ -1,10 +1,13 @@
 //! The image for a goal: by the given method, by the better of two methods, or by settings planned for a time or an
 //! error.
 
-use super::finish::{FinishingTime, FrameContext};
-use super::frame::{FrameError, Notes};
+use super::context::FrameContext;
+use super::error::FrameError;
+use super::finishing_time::FinishingTime;
+use super::former::Former;
 use super::goal::{ErrorLimit, Goal, PlanGoal, TimeGoal};
-use super::next_frame::{Former, next_frame};
+use super::next_frame::next_frame;
+use super::notes::Notes;
 use super::report;
 use crate::method::{LightStore, Method, Output};
 use crate::plan::{self, Chooser, Deadline, ErrorGoal, LATE, Ladder, MethodChoice};

@@ -1,10 +1,13 @@
 //! A frame, from its goal to its facts.
 
-use super::finish::{Finish, FrameContext};
-use super::frame::{self, FrameError, Notes, Remark, RenderedFrame};
+use super::context::FrameContext;
+use super::error::FrameError;
+use super::finish::Finish;
+use super::former::Former;
+use super::frame::{self, Remark, RenderedFrame};
 use super::frame_report::FrameReport;
 use super::goal::Goal;
-use super::next_frame::Former;
+use super::notes::Notes;
 use super::planned::{self, Made, Measurement};
 use super::{Session, report};
 use crate::method::path::PartialImage;

@@ -1,6 +1,7 @@
 //! Reports of a plan and of the measured error, for statistics, metadata and users.
 
-use super::frame::{Notes, Remark};
+use super::frame::Remark;
+use super::notes::Notes;
 use crate::method::Method;
 use crate::plan::MethodChoice;
 use crate::verify::{Estimate, Verified, VerifySettings};

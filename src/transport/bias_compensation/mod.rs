@@ -25,6 +25,7 @@
 //! Units: b in 1/m².
 
 pub mod lobes;
+pub mod near_surface;
 pub mod points;
 pub mod short_rays;
 

@@ -5,7 +5,7 @@
 //!
 //! Deviations: only light that bases reflect is compensated, not that of lobes.
 
-use super::lobes::NearSurface;
+use super::near_surface::NearSurface;
 use super::short_rays::{self, ClampedPoint};
 use super::{Compensation, choose_evenly, lobes};
 use crate::lightcut::{
@@ -320,7 +320,7 @@ fn mean_irradiance(receivers: &ReceiverPacket, radiance: &[Rgb; LANES]) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::bias_compensation::lobes::Lack;
+    use crate::bias_compensation::near_surface::Lack;
     use embree::Ray;
     use glam::Vec3;
     use scene::Camera;

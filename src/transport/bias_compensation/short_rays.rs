@@ -4,7 +4,7 @@
 //! lights close behind a pane stays lost.
 
 use super::Compensation;
-use super::lobes::{Lack, MAX_LOBE, NearSurface};
+use super::near_surface::{Lack, MAX_LOBE, NearSurface};
 use base::math::{Frame, LANES, Rgb, lanes_in, luminance};
 use base::sampling::{cosine_hemisphere, owen_sobol_2d};
 use embree::{Hit, Hits16, Ray, Rays16};

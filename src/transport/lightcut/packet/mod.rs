@@ -19,8 +19,11 @@
 //! luminance counts as at least 1/256 of the brightest lane's. Otherwise one point in the dark would drive the cut of
 //! fifteen lit points to its cap.
 
+mod bound;
 mod clamps;
 mod cluster_box;
+mod cut;
+mod gather;
 #[cfg(test)]
 mod point_tests;
 mod receivers;
@@ -32,9 +35,9 @@ mod tests;
 mod transfer;
 
 pub use clamps::{BRIGHTER, Clamps};
+pub use cut::{Lightcut, PacketCluster, PacketCut, PacketSum, Unshadowed};
 pub use receivers::ReceiverPacket;
 pub(super) use refine::halved;
 pub use sampled::{SampledCut, SampledSettings, Samples};
 pub(super) use sum::PacketLight;
-pub use sum::{Lightcut, PacketCluster, PacketCut, PacketSum, Unshadowed};
 pub(super) use transfer::luminances;

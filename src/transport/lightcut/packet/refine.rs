@@ -1,7 +1,7 @@
 //! Refinement of a packet's cut.
 
-use super::sum::{Judgement, Sight};
-use super::{Lightcut, PacketCluster, PacketCut, PacketLight, ReceiverPacket, Unshadowed, luminances};
+use super::cut::{Judgement, Sight};
+use super::{Lightcut, PacketCluster, ReceiverPacket, Unshadowed, luminances};
 use crate::lightcut::clamp::{DOMINANT, DOMINANT_TO_REST, is_weak};
 use crate::lightcut::{CutSettings, Transfer, Visibility};
 use crate::lights::{LightNode, LightTrees};
@@ -243,29 +243,4 @@ pub(in crate::lightcut) fn halved<T: Copy>(mut lanes: [T; LANES], f: impl Fn(T, 
         half /= 2;
     }
     lanes[0]
-}
-
-impl Lightcut {
-    /// Creates an empty workspace.
-    pub fn new() -> Lightcut {
-        Lightcut::default()
-    }
-
-    /// Gathers the light of all VPLs to within the error of `settings`, on average over the lanes.
-    pub fn gather<V: Visibility>(
-        &mut self,
-        transfer: &Transfer,
-        visibility: &V,
-        receivers: &ReceiverPacket,
-        settings: &CutSettings,
-    ) -> PacketCut<'_> {
-        let capped = PacketRefinement::new(self, transfer, visibility, receivers, settings).run();
-        let count = receivers.len() as u64;
-        self.counts.cuts += count;
-        self.counts.clusters += count * self.clusters.len() as u64;
-        self.counts.capped += count * u64::from(capped);
-        let light = PacketLight { clusters: &self.clusters, strong: Vec3x16::ZERO };
-        let sum = light.sum(transfer, receivers, settings.clamp, &mut self.counts);
-        PacketCut { sum, clusters: &self.clusters, unshadowed: &self.unshadowed }
-    }
 }
