@@ -100,9 +100,10 @@ pub fn segment(a: Vec3, a_normal: Vec3, b: Vec3, b_normal: Vec3) -> Ray {
 #[inline(always)]
 pub fn to_light(position: Vec3, normal: Vec3, lights: &DirectSamples16, lane: usize) -> Ray {
     let (direction, distance) = (lights.direction.get(lane), lights.distance[lane]);
-    let near = segment(position, normal, position + direction * distance, lights.normal.get(lane));
-    let far = ray_from(position, normal, direction);
-    if distance < f32::INFINITY { near } else { far }
+    if distance < f32::INFINITY {
+        return segment(position, normal, position + direction * distance, lights.normal.get(lane));
+    }
+    ray_from(position, normal, direction)
 }
 
 /// Returns the share of the light that arrives along a segment: 0 if it is occluded or passes more than `most` sheets,
