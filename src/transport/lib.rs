@@ -14,6 +14,7 @@
 //! - [`shade`] lights points with these;
 //! - [`gradient`] differentiates that light along a surface, [`hsh`] expands it over the hemisphere;
 //! - [`radiance_cache`] keeps it as records, splats them and adapts their footprints;
+//! - [`irradiance`] estimates irradiance from the density of photons;
 //! - [`photon`] finds indirect light with photons and final gathering, for comparison;
 //! - [`reprojection`] carries light to the next frame of a walk, [`perception`] tells which differences are visible.
 
@@ -25,6 +26,7 @@ pub mod emission;
 pub mod eye;
 pub mod gradient;
 pub mod hsh;
+pub mod irradiance;
 pub mod learning;
 pub mod lightcut;
 pub mod lights;

@@ -4,7 +4,10 @@ use super::photon_store::{Memo, PhotonStore, forget, recall};
 use super::tally::Tally;
 use crate::method::Sampling;
 use base::progress::Control;
+use base::stats::Stage;
 use std::sync::Arc;
+use transport::eye::EyeSettings;
+use transport::irradiance::PathEnds;
 use transport::learning::{LearnedLight, Learning};
 use transport::lights::{Family, LightPassSettings, Lights, LightsWanted};
 use world::view::View;
@@ -29,6 +32,8 @@ pub fn lights_wanted(
 pub struct LightStore {
     lights: Memo<LightsWanted, Lights>,
     learned: Memo<Learning, LearnedLight>,
+    /// Ends of paths, by seed and maximum path length.
+    path_ends: Memo<(u32, u32), PathEnds>,
     /// Caustic photons.
     pub photons: PhotonStore,
 }
@@ -38,6 +43,7 @@ impl LightStore {
     pub fn forget(&self) {
         forget(&self.lights);
         forget(&self.learned);
+        forget(&self.path_ends);
         self.photons.forget();
     }
 
@@ -45,6 +51,28 @@ impl LightStore {
     pub fn learned(&self, world: &World, view: &View, spp: u32, control: &Control) -> Arc<LearnedLight> {
         let wanted = Learning::new(view, spp);
         recall(&self.learned, wanted, control, |wanted| wanted.learn(world, view, control))
+    }
+
+    /// Returns the light by which paths of the eye pass end behind specular lobes; `None` if they go on.
+    pub fn path_ends(
+        &self,
+        world: &World,
+        settings: EyeSettings,
+        control: &Control,
+        tally: &mut Tally,
+    ) -> Option<Arc<PathEnds>> {
+        let EyeSettings { seed, max_depth, .. } = settings;
+        PathEnds::exist(world, max_depth).then(|| {
+            let make = || {
+                recall(&self.path_ends, (seed, max_depth), control, |_| {
+                    PathEnds::new(world, max_depth, seed, control)
+                })
+            };
+            let ends = tally.time(Stage::LightPass, make);
+            tally.count("Eye/photon paths", ends.paths);
+            tally.rays(ends.rays);
+            ends
+        })
     }
 
     /// Returns the virtual lights of `world`, and makes them if others were made last.

@@ -68,10 +68,12 @@ impl<'w> Prepared<'w> {
             let learn = || lights.learned(world, view, sampling.spp, control);
             (direct, tally.time(Stage::EyePass, learn))
         });
+        let path_ends = direct.as_ref().and_then(|_| lights.path_ends(world, settings, control, &mut tally));
         let sources = known.as_ref().map(|(direct, known)| LightSources {
             direct,
             caustics: caustics.as_ref(),
             learned: known.light.as_ref(),
+            path_ends: path_ends.as_deref(),
         });
         control.begin(Stage::EyePass, view.window.tile_count(TILE) as u64);
         let eye = tally

@@ -25,7 +25,7 @@ use world::World;
 use world::view::View;
 
 /// Expected maximum number of shading points per pixel and batch after merging.
-const POINTS_PER_BATCH: u64 = 3;
+const POINTS_PER_BATCH: u64 = 7;
 
 impl<'w> EyePass<'w> {
     /// Samples direct light with at least `settings.spp` paths per pixel and finds the shading points that need

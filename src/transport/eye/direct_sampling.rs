@@ -2,6 +2,7 @@
 
 use super::{ExtraSamples, Settled};
 use crate::caustics::Caustics;
+use crate::irradiance::PathEnds;
 use world::light::Learned;
 
 /// Order for direct light that the eye pass samples.
@@ -27,4 +28,6 @@ pub struct LightSources<'a> {
     pub caustics: Option<&'a Caustics>,
     /// Learned light that guides light samples.
     pub learned: Option<&'a Learned>,
+    /// Light by which paths end behind specular lobes; `None` if they go on.
+    pub path_ends: Option<&'a PathEnds>,
 }

@@ -5,6 +5,7 @@ use super::caustic_lookups::CausticLookups;
 use super::guides::FirstSurfaces;
 use super::merge::MergedPoint;
 use crate::caustics::Caustics;
+use crate::irradiance::PathEnds;
 use crate::paths::{ChainEnd, LightSamples, PathPolicy, ScatteredEdges};
 use base::math::Rgb;
 use glam::Vec3;
@@ -15,6 +16,7 @@ use world::material::{Bsdf, LobeSet};
 pub(super) struct FirstHits<'a, 'w> {
     pub direct: &'a DirectSampling,
     pub learned: Option<&'a Learned>,
+    pub path_ends: Option<&'a PathEnds>,
     pub caustics: Option<&'a Caustics>,
     pub lookups: CausticLookups,
     /// Distance between neighbouring points over the distance from the eye, on surfaces that face it.
@@ -44,6 +46,10 @@ impl<'w> PathPolicy<'w> for FirstHits<'_, 'w> {
 
     fn learned(&self) -> Option<&Learned> {
         self.learned
+    }
+
+    fn path_ends(&self) -> Option<&PathEnds> {
+        self.path_ends
     }
 
     fn edges(&self) -> ScatteredEdges {

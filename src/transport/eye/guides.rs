@@ -179,7 +179,7 @@ mod tests {
                 &world,
                 &view,
                 settings,
-                LightSources { direct: &direct, caustics: None, learned: None },
+                LightSources { direct: &direct, caustics: None, learned: None, path_ends: None },
                 &Control::new(),
             );
             let Some(guides) = pass.guides else {

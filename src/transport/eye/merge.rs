@@ -17,7 +17,7 @@ const MIN_COS: f32 = 0.98;
 
 /// Mean number of points per pixel beyond mirrors, glass and sharp lobes, if all light of the pixel comes through
 /// them.
-const CHAINED_POINTS: f32 = 2.0;
+const CHAINED_POINTS: f32 = 6.0;
 
 /// Shading point under construction.
 #[derive(Clone, Copy, Debug)]

@@ -45,6 +45,7 @@ impl EyePass<'_> {
             direct: &direct,
             caustics: Some(few),
             learned: None,
+            path_ends: None,
             edges,
             light_samples,
             control,

@@ -7,6 +7,7 @@ use super::guides::{FirstSurfaces, Guide};
 use super::merge::{MergedPoint, MergedPoints};
 use super::{EyeCounts, EyeSettings, FeatureSettings, guide};
 use crate::caustics::Caustics;
+use crate::irradiance::PathEnds;
 use crate::paths::{Batch, Estimand, LightSamples, PathStart, RayCounts, ScatteredEdges, start};
 use base::math::{LANES, Rgb, luminance};
 use base::progress::Control;
@@ -40,6 +41,7 @@ pub(super) struct Tracer<'a, 'w> {
     pub(super) direct: &'a DirectSampling,
     pub(super) caustics: Option<&'a Caustics>,
     pub(super) learned: Option<&'a Learned>,
+    pub(super) path_ends: Option<&'a PathEnds>,
     pub(super) edges: ScatteredEdges,
     pub(super) light_samples: LightSamples,
     pub(super) control: &'a Control,
@@ -136,10 +138,20 @@ impl<'a, 'w> Tracer<'a, 'w> {
         control: &'a Control,
         counts: &mut RayCounts,
     ) -> Tracer<'a, 'w> {
-        let LightSources { direct, caustics, learned } = sources;
+        let LightSources { direct, caustics, learned, path_ends } = sources;
         let (edges, light_samples) = (ScatteredEdges::default(), LightSamples::ONE);
-        let mut tracer =
-            Tracer { world, view, settings, direct, caustics, learned, edges, light_samples, control };
+        let mut tracer = Tracer {
+            world,
+            view,
+            settings,
+            direct,
+            caustics,
+            learned,
+            path_ends,
+            edges,
+            light_samples,
+            control,
+        };
         let all = || tracer.workspace().ends;
         tracer.edges = guide::edges(world, view, settings, all, caustics, counts);
         tracer
@@ -147,11 +159,12 @@ impl<'a, 'w> Tracer<'a, 'w> {
 
     pub(super) fn workspace(&self) -> TracerWorkspace<'_, 'w> {
         let spacing_by_distance = SPACING * self.view.pixel_angle();
-        let Tracer { direct, caustics, learned, edges, light_samples, .. } = *self;
+        let Tracer { direct, caustics, learned, path_ends, edges, light_samples, .. } = *self;
         let max_depth = if self.world.has_sheets() { self.settings.max_depth } else { u32::MAX };
         let ends = FirstHits {
             direct,
             learned,
+            path_ends,
             caustics,
             lookups: CausticLookups::default(),
             spacing_by_distance,

@@ -208,6 +208,11 @@ impl Batch {
         }
         let Seen16 { wo, normal } = packet.seen(surfaces);
         let mut bsdfs = world.bsdfs(surfaces, wo);
+        followed =
+            packet.end_by_photons(surfaces, &mut bsdfs, (followed, step.depth), policy, &mut self.radiance);
+        if followed == 0 {
+            return;
+        }
         let glossy = packet.keep_glossy(&mut bsdfs, followed, policy);
         let axes = [&surfaces.tangent, &surfaces.bitangent, &surfaces.shading_normal];
         let (depth, found, bsdfs, chained) = (step.depth, followed, &bsdfs, Default::default());

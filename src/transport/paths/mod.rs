@@ -11,8 +11,10 @@ mod found_light;
 mod groups;
 mod guided;
 mod packet;
+mod photon_ends;
 mod policy;
 mod start;
+
 #[cfg(test)]
 mod tests;
 mod vertex;

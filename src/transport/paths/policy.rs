@@ -1,5 +1,6 @@
 //! Policy of paths: the light that a batch finds along them, and how far they go.
 
+use crate::irradiance::PathEnds;
 use base::math::Rgb;
 use glam::Vec3;
 use world::Surface;
@@ -88,6 +89,11 @@ pub trait PathPolicy<'w> {
     /// Returns the probabilities for edges scattered at chain ends.
     fn edges(&self) -> ScatteredEdges {
         ScatteredEdges::default()
+    }
+
+    /// Returns the light by which paths end at diffuse surfaces behind specular lobes; `None` if they go on.
+    fn path_ends(&self) -> Option<&PathEnds> {
+        None
     }
 
     /// Returns true if paths continue from the surface after a chain end by glossy lobes, too sharp to count as

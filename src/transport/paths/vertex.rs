@@ -11,6 +11,9 @@
 //! | `Bent` | of all lobes | delta lobes as `Bent`, other lobes as `Full` |
 //! | `Full` | of all lobes | all lobes as `Full` |
 //!
+//! With [`PathPolicy::path_ends`], `Bent` and `Full` paths find the light of diffuse lobes by photons. They sample
+//! light and go on by the other lobes alone.
+//!
 //! So a path that stops at the first surface which ends a chain ([`PathPolicy`]) has one more edge, which finds
 //! emitters: the counterpart of the light samples in multiple importance sampling. If that edge hits a mirror, glass or
 //! a glossy lobe, the path continues by this lobe alone, since virtual lights carry the other lobes.

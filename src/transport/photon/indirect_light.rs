@@ -7,7 +7,7 @@
 //!
 //! Units: radiance.
 
-use super::irradiance::IrradianceMap;
+use crate::irradiance::IrradianceMap;
 use base::math::Rgb;
 use base::sampling::Sampler;
 use base::stats::add_fields;

@@ -1,11 +1,11 @@
 //! The photon map against known solutions: density of photons, leaks, and gathering against plain sampling.
 
-use super::density::{IrradianceEstimate, estimates};
 use super::hemisphere::{GatherPoint, gather};
 use super::indirect_light::{GatherCounts, IndirectLight};
 use super::strata::{Strata, StrataHits};
-use super::{IrradianceMap, PhotonMap};
 use crate::emission::PhotonSettings;
+use crate::irradiance::density::{IrradianceEstimate, estimates};
+use crate::irradiance::{IrradianceMap, PhotonMap};
 use base::math::{Frame, LANES, Rgb};
 use base::progress::Control;
 use base::sampling::{cosine_hemisphere, owen_sobol_2d};

@@ -76,6 +76,13 @@ impl<'m> Bsdf<'m> {
         glossy.then(|| Bsdf { base: Rgb::ZERO, ..*self }.without(dull))
     }
 
+    /// Divides the material, seen from `wo`, into the albedo of all that is wide enough to count as diffuse, and the
+    /// other lobes.
+    pub fn split_diffuse(&self, wo: Vec3) -> (Rgb, Self) {
+        let wide = self.lobes(|lobe| lobe.diffuse_albedo(Rgb::ONE, 1.0).is_some());
+        (self.diffuse_albedo(wo), Bsdf { base: Rgb::ZERO, ..*self }.without(wide))
+    }
+
     /// Returns true if part of the light is scattered to the other side in more than isolated directions.
     pub fn scatters_across(&self) -> bool {
         self.model.kinds.across && self.any_lobe(LobeModel::scatters_across)

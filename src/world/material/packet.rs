@@ -97,11 +97,18 @@ impl<'m> Bsdfs16<'m> {
         let mut glossy = 0;
         for lane in lanes_in(lanes & self.layered) {
             if let Some(part) = self.lane(lane).glossy_part() {
-                self.set(lane, &part);
+                self.replace(lane, &part);
                 glossy |= 1 << lane;
             }
         }
         glossy
+    }
+
+    /// Replaces the material of a lane by a part of it.
+    #[inline]
+    pub fn replace(&mut self, lane: usize, part: &Bsdf<'m>) {
+        (self.layered, self.smooth) = (self.layered & !(1 << lane), self.smooth & !(1 << lane));
+        self.set(lane, part);
     }
 
     /// Returns the material of a lane.

@@ -107,8 +107,12 @@ impl Renderer for Settings {
         let FoundCaustics { caustics, rays, shadow_rays, .. } =
             lights.photons.pilot(world, view, settings, control);
         let known = lights.learned(world, view, self.spp, control);
-        let sources =
-            LightSources { direct: &direct, caustics: caustics.as_ref(), learned: known.light.as_ref() };
+        let sources = LightSources {
+            direct: &direct,
+            caustics: caustics.as_ref(),
+            learned: known.light.as_ref(),
+            path_ends: None,
+        };
         let found = EyePass::pilot(world, view, settings, sources, groups, control);
         let EyePilot { luminances, photons, sampled, before } = found;
         let luminances = luminances.map(|by_group| by_group.into_iter().flatten().map(f64::from).collect());

@@ -2,7 +2,6 @@
 
 use crate::method::Sampling;
 use crate::method::tally::Tally;
-use base::kd_tree::KdTree;
 use base::math::Rgb;
 use base::progress::Control;
 use base::setting::settings;
@@ -10,12 +9,11 @@ use base::stats::Stage;
 use rayon::prelude::*;
 use transport::emission::PhotonSettings;
 use transport::eye::EyePass;
+use transport::irradiance::{IrradianceMap, PhotonMap};
 use transport::lights::Origin;
-use transport::photon::density::estimates;
 use transport::photon::indirect_light::GatherCounts;
 use transport::photon::own::{SampleGather, reflected};
 use transport::photon::records::FinalGatherSource;
-use transport::photon::{IrradianceMap, PhotonMap};
 use transport::shade::{Reflected, ShadingTask};
 use world::World;
 
@@ -59,11 +57,8 @@ impl GatheringSettings {
         tally.count("Photons/paths", photons.counts.paths);
         tally.rays(photons.counts.rays);
         control.begin(Stage::Tree, 0);
-        let (map, rays) =
-            tally.time(Stage::Tree, || match estimates(world, &photons, self.nearest, control) {
-                Some((estimates, rays)) => (IrradianceMap::new(&estimates, &photons.site_index), rays),
-                None => (IrradianceMap::new(&[], &KdTree::empty()), 0),
-            });
+        let estimate = || IrradianceMap::of_photons(world, &photons, self.nearest, control);
+        let (map, rays) = tally.time(Stage::Tree, estimate);
         tally.count("Photons/estimates of irradiance", map.len() as u64);
         tally.rays(rays);
         map

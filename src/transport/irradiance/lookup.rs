@@ -2,10 +2,13 @@
 //!
 //! Paper: Christensen 1999: one look-up at each hit of a final gathering, instead of an estimate.
 
-use super::density::{IrradianceEstimate, MIN_COS, surface_distance_sq};
+use super::PhotonMap;
+use super::density::{IrradianceEstimate, MIN_COS, estimates, surface_distance_sq};
 use base::kd_tree::{KdTree, WideKdTree};
 use base::math::{F32x16, LANES, Rgb, U32x16, Vec3x16, lanes_in, mask_of};
+use base::progress::Control;
 use glam::Vec3;
+use world::World;
 
 /// Maximum number of packets of estimates in a leaf, which follows from the leaf size of the index.
 const PACKETS: usize = 2;
@@ -30,6 +33,20 @@ pub struct IrradianceMap {
 }
 
 impl IrradianceMap {
+    /// Builds the map by the `nearest` photons of each site. Also returns the number of rays. The map is empty if
+    /// `control` is cancelled.
+    pub fn of_photons(
+        world: &World,
+        photons: &PhotonMap,
+        nearest: usize,
+        control: &Control,
+    ) -> (IrradianceMap, u64) {
+        match estimates(world, photons, nearest, control) {
+            Some((estimates, rays)) => (IrradianceMap::new(&estimates, &photons.site_index), rays),
+            None => (IrradianceMap::new(&[], &KdTree::empty()), 0),
+        }
+    }
+
     /// Builds the map from estimates in the order of the index.
     pub fn new(estimates: &[IrradianceEstimate], index: &KdTree) -> IrradianceMap {
         let leaves = (0..index.leaves())

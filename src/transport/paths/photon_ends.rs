@@ -1,0 +1,36 @@
+//! Ends of paths behind specular lobes, by the light of photons ([`crate::irradiance::PathEnds`]).
+
+use super::packet::{Packet, PathStage};
+use super::policy::PathPolicy;
+use base::math::{Rgb, lanes_in};
+use world::Surfaces16;
+use world::material::Bsdfs16;
+
+impl Packet {
+    /// Adds to `results` what diffuse surfaces reflect behind specular lobes, and removes their diffuse lobes. Returns
+    /// the lanes of `found` that have other lobes, or no such end.
+    pub fn end_by_photons<'w, R: PathPolicy<'w>>(
+        &self,
+        surfaces: &Surfaces16,
+        bsdfs: &mut Bsdfs16,
+        (found, depth): (u16, u32),
+        policy: &R,
+        results: &mut [Rgb],
+    ) -> u16 {
+        let Some(ends) = policy.path_ends() else { return found };
+        let behind = found & (self.at(PathStage::Full) | self.at(PathStage::Bent));
+        let mut left = found;
+        for lane in lanes_in(behind) {
+            let (albedo, rest) = bsdfs.lane(lane).split_diffuse(bsdfs.wo(lane));
+            let (normal, direction) = (surfaces.normal.get(lane), self.rays.get(lane).direction);
+            let facing = if normal.dot(direction) < 0.0 { normal } else { -normal };
+            let reflected = ends.reflected(depth, surfaces.position.get(lane), facing, albedo);
+            let Some(reflected) = reflected else { continue };
+            results[self.slot[lane] as usize] += self.throughput.get(lane) * reflected;
+            bsdfs.replace(lane, &rest);
+            let goes_on = rest.has_smooth() || rest.has_delta();
+            left &= !(u16::from(!goes_on) << lane);
+        }
+        left
+    }
+}
