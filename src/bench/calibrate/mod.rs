@@ -85,8 +85,8 @@ const BUDGETS: &[Column<Budget>] = &[
     Column::new("", "FLIP", |_, b| Cell::figure(b.cost.flip)),
 ];
 
-/// The planner's pilot of a scene.
-struct Pilot {
+/// The planner's results for a scene.
+struct Planned {
     chooser: Chooser,
     ladder: Ladder,
     /// Processor seconds that it took.
@@ -110,7 +110,7 @@ fn run(study: &Study, files: &[PathBuf]) -> Result<Results, StudyError> {
 
 /// Returns the answer for a scene; `None` if there is nothing to choose.
 fn scene(study: &Study, subject: Subject) -> Result<Option<SceneAnswer>, StudyError> {
-    let Some(pilot) = Pilot::new(study, &subject) else {
+    let Some(pilot) = Planned::new(study, &subject) else {
         (study.say)(&format!("{}: there is no light, and nothing to choose", subject.name));
         return if study.control.is_cancelled() { Err(StudyError::Interrupted) } else { Ok(None) };
     };
@@ -124,13 +124,13 @@ fn scene(study: &Study, subject: Subject) -> Result<Option<SceneAnswer>, StudyEr
     Ok(Some(SceneAnswer { answer, denoising, budgets, pilot_seconds: pilot.seconds, choice }))
 }
 
-impl Pilot {
-    fn new(study: &Study, subject: &Subject) -> Option<Pilot> {
+impl Planned {
+    fn new(study: &Study, subject: &Subject) -> Option<Planned> {
         let watch = Stopwatch::start();
         let (world, lights) = (&subject.session.world, &LightStore::default());
         let chooser = Chooser::new(world, lights, &subject.view, &Method::default(), study.control)?;
         let seconds = watch.elapsed().cpu_seconds;
-        Some(Pilot { chooser, ladder: Ladder::new(Method::default(), &[])?, seconds })
+        Some(Planned { chooser, ladder: Ladder::new(Method::default(), &[])?, seconds })
     }
 }
 

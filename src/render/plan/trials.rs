@@ -35,7 +35,7 @@ pub struct Trial {
 
 /// Next kind of trial.
 #[derive(Clone, Copy, Debug)]
-enum Step {
+enum TrialKind {
     Rough,
     Larger,
     Near(u32),
@@ -49,30 +49,30 @@ pub struct Trials<'a> {
     finishing: f64,
     timed: Vec<Timed>,
     model: Option<TimeModel>,
-    step: Step,
+    kind: TrialKind,
 }
 
 impl<'a> Trials<'a> {
     /// Begins without trials. Each eye sample takes `finishing` seconds after the render.
     pub fn new(ladder: &'a Ladder, view: &'a View, finishing: f64) -> Trials<'a> {
-        Trials { ladder, view, finishing, timed: Vec::new(), model: None, step: Step::Rough }
+        Trials { ladder, view, finishing, timed: Vec::new(), model: None, kind: TrialKind::Rough }
     }
 
     /// Returns the next trial, if `usable` seconds are left; `None` if there is enough known, or no time.
     pub fn next(&mut self, usable: f64) -> Option<Trial> {
         let second = self.small(ROUGH[1]);
-        if let Step::Rough = self.step {
-            self.step = Step::Larger;
+        if let TrialKind::Rough = self.kind {
+            self.kind = TrialKind::Larger;
             return Some(Trial { level: 0.0, view: self.small(ROUGH[0]) });
         }
-        if let Step::Larger = self.step {
-            self.step = Step::Near(0);
+        if let TrialKind::Larger = self.kind {
+            self.kind = TrialKind::Near(0);
             if self.seconds_of(&second, 0.0)? < PILOT_SHARE * usable {
                 return Some(Trial { level: 0.0, view: second });
             }
         }
-        let Step::Near(round) = self.step else { return None };
-        self.step = Step::Near(round + 1);
+        let TrialKind::Near(round) = self.kind else { return None };
+        self.kind = TrialKind::Near(round + 1);
         let allowed = PILOT_SHARE * usable;
         let wanted = self.highest(self.view, usable - allowed)?;
         let fits = |&divisor: &u32| {

@@ -29,7 +29,7 @@ const FLOOR: f32 = 0.1;
 
 /// Geometry of a cluster seen from a point: squared distances and cosines at both ends.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Outlook<L = f32> {
+pub(super) struct ClusterView<L = f32> {
     /// Minimum squared distance, the divisor of the bound.
     pub near_sq: L,
     /// Squared distance of the centre.
@@ -42,7 +42,7 @@ pub(super) struct Outlook<L = f32> {
 
 /// Returns the expected error of a cluster relative to its upper bound.
 #[inline(always)]
-pub(super) fn expected_share<L: Lane>(o: Outlook<L>) -> L {
+pub(super) fn expected_share<L: Lane>(o: ClusterView<L>) -> L {
     let one = L::from(1.0);
     // The centre is in the box, so only the limit on distances can make it nearer than the nearest point.
     let centre_sq = o.centre_sq.max(o.near_sq);
@@ -55,7 +55,7 @@ pub(super) fn expected_share<L: Lane>(o: Outlook<L>) -> L {
 }
 
 /// Returns the bound of a lobe in the direction at `z` along its axis and at `distance`, times the distance. It takes
-/// the place of the cosine in [`Outlook::at_centre`].
+/// the place of the cosine in [`ClusterView::at_centre`].
 #[inline(always)]
 pub(super) fn lobe_at<L: Lane>(z: L, distance: L, width_sq: f32) -> L {
     distance * LobeShape::max_share(z * distance.max(L::from(1e-37)).recip(), width_sq)
@@ -65,15 +65,15 @@ pub(super) fn lobe_at<L: Lane>(z: L, distance: L, width_sq: f32) -> L {
 mod tests {
     use super::*;
 
-    const LEVEL: Outlook =
-        Outlook { near_sq: 1.0, centre_sq: 1.0, at_centre: [1.0, 1.0], largest: [1.0, 1.0] };
+    const LEVEL: ClusterView =
+        ClusterView { near_sq: 1.0, centre_sq: 1.0, at_centre: [1.0, 1.0], largest: [1.0, 1.0] };
 
     #[test]
     fn a_tight_bound_is_taken_whole_and_a_loose_one_in_part() {
         assert_eq!(expected_share(LEVEL), SCALE);
-        let far = expected_share(Outlook { centre_sq: 100.0, at_centre: [10.0, 10.0], ..LEVEL });
+        let far = expected_share(ClusterView { centre_sq: 100.0, at_centre: [10.0, 10.0], ..LEVEL });
         assert!((far / SCALE - SPREAD / 10.0).abs() < 1e-6, "{far}");
-        let averted = expected_share(Outlook { at_centre: [-1.0, 1.0], ..LEVEL });
+        let averted = expected_share(ClusterView { at_centre: [-1.0, 1.0], ..LEVEL });
         assert!((averted / SCALE - SPREAD * FLOOR.sqrt()).abs() < 1e-6, "{averted}");
     }
 
@@ -85,10 +85,10 @@ mod tests {
             for near_sq in [centre_sq, 1e-36, 1e-20, 1.0, 1e20] {
                 for cosine in [-1.0f32, 0.0, 1e-20, 1.0] {
                     let at_centre = [cosine * centre_sq.sqrt(), centre_sq.sqrt()];
-                    let outlook = Outlook { near_sq, centre_sq, at_centre, largest: [cosine.max(0.0), 1.0] };
-                    let share = expected_share(outlook);
+                    let view = ClusterView { near_sq, centre_sq, at_centre, largest: [cosine.max(0.0), 1.0] };
+                    let share = expected_share(view);
                     let farther = near_sq < 1e-10 * centre_sq;
-                    assert!(share <= SCALE && (share > 0.0 || farther), "{share} {outlook:?}");
+                    assert!(share <= SCALE && (share > 0.0 || farther), "{share} {view:?}");
                 }
             }
         }

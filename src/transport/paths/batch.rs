@@ -93,10 +93,10 @@ impl Batch {
             }
             let surfaces = covered(world, &packet, &mut hits, found);
             packet.arrive(world, &surfaces, found, policy, &mut self.radiance);
-            let step = Step { depth, max_depth, kept: &mut kept };
-            self.scatter(world, &mut packet, Hit { surfaces: &surfaces, found }, step, policy, counts);
+            let edge = Edge { depth, max_depth, kept: &mut kept };
+            self.scatter(world, &mut packet, Hit { surfaces: &surfaces, found }, edge, policy, counts);
         }
-        self.finish(world, Step { depth, max_depth, kept: &mut kept }, policy, counts);
+        self.finish(world, Edge { depth, max_depth, kept: &mut kept }, policy, counts);
     }
 
     /// Traces the first edges and shades their ends in groups. Surfaces with mirrors, glass or gaps are shaded one by
@@ -126,8 +126,8 @@ impl Batch {
             let grouped = found & world.with_densities_alone(&surfaces.mesh);
             for lane in lanes_in(found & !grouped) {
                 if single.push(&packet, &hits, lane) {
-                    let step = Step { depth: 1, max_depth, kept: &mut kept };
-                    self.scatter_single(world, &mut single, step, policy, counts);
+                    let edge = Edge { depth: 1, max_depth, kept: &mut kept };
+                    self.scatter_single(world, &mut single, edge, policy, counts);
                 }
             }
             if grouped == 0 {
@@ -137,21 +137,21 @@ impl Batch {
             let (surfaces, pixel) = (&surfaces, &packet.samplers.seed);
             let first = FirstHits16 { surfaces, directions: &directions, pixel, spacing };
             collect(world, &first, grouped, &mut groups);
-            let step = Step { depth: 1, max_depth, kept: &mut kept };
+            let edge = Edge { depth: 1, max_depth, kept: &mut kept };
             let lanes = GroupLanes::new(&groups);
             let GroupLanes { bsdfs, normal, found, .. } = &lanes;
             let (axes, chained) = (lanes.axes.each_ref(), Default::default());
-            let (depth, found, normal, glossy) = (step.depth, *found, *normal, 0);
+            let (depth, found, normal, glossy) = (edge.depth, *found, *normal, 0);
             let mut vertices =
                 Vertices { world, surfaces, depth, found, bsdfs, axes, normal, glossy, chained };
-            let mut light = FoundLight { at_once: true, ..self.light(world, &step, counts) };
+            let mut light = FoundLight { at_once: true, ..self.light(world, &edge, counts) };
             vertices.end_chains_of_groups(&packet, &groups, policy, &mut light);
             let going_on = packet.scatter(&vertices, policy, &mut light);
-            self.go_on(world, &mut packet, going_on, step, policy, counts);
+            self.go_on(world, &mut packet, going_on, edge, policy, counts);
         }
-        let step = Step { depth: 1, max_depth, kept: &mut kept };
-        self.scatter_single(world, &mut single, step, policy, counts);
-        self.finish(world, Step { depth: 1, max_depth, kept: &mut kept }, policy, counts);
+        let edge = Edge { depth: 1, max_depth, kept: &mut kept };
+        self.scatter_single(world, &mut single, edge, policy, counts);
+        self.finish(world, Edge { depth: 1, max_depth, kept: &mut kept }, policy, counts);
     }
 
     /// Traces the edges of a packet and adds the light of those that hit nothing. Returns the lanes with hits.
@@ -179,7 +179,7 @@ impl Batch {
         &mut self,
         world: &'w World,
         single: &mut SingleHits,
-        step: Step,
+        edge: Edge,
         policy: &mut R,
         counts: &mut RayCounts,
     ) {
@@ -187,7 +187,7 @@ impl Batch {
         if found != 0 {
             let surfaces = covered(world, &single.packet, &mut single.hits, found);
             let hit = Hit { surfaces: &surfaces, found };
-            self.scatter(world, &mut single.packet, hit, step, policy, counts);
+            self.scatter(world, &mut single.packet, hit, edge, policy, counts);
         }
     }
 
@@ -197,13 +197,13 @@ impl Batch {
         world: &'w World,
         packet: &mut Packet,
         Hit { surfaces, found }: Hit,
-        step: Step,
+        edge: Edge,
         policy: &mut R,
         counts: &mut RayCounts,
     ) {
         let mut followed = found & packet.followed();
         followed &= !packet.at(PathStage::Scattered) | world.specular.lanes(&surfaces.mesh);
-        if followed == 0 || step.depth >= step.max_depth {
+        if followed == 0 || edge.depth >= edge.max_depth {
             return;
         }
         let Seen16 { wo, normal } = packet.seen(surfaces);
@@ -215,18 +215,18 @@ impl Batch {
         }
         let glossy = packet.keep_glossy(&mut bsdfs, followed, policy);
         let axes = [&surfaces.tangent, &surfaces.bitangent, &surfaces.shading_normal];
-        let (depth, found, bsdfs, chained) = (step.depth, followed, &bsdfs, Default::default());
+        let (depth, found, bsdfs, chained) = (edge.depth, followed, &bsdfs, Default::default());
         let mut vertices = Vertices { world, surfaces, depth, found, bsdfs, axes, normal, glossy, chained };
-        let mut light = self.light(world, &step, counts);
+        let mut light = self.light(world, &edge, counts);
         vertices.end_chains(packet, policy, &mut light);
         let going_on = packet.scatter(&vertices, policy, &mut light);
-        self.go_on(world, packet, going_on, step, policy, counts);
+        self.go_on(world, packet, going_on, edge, policy, counts);
     }
 
-    /// Returns the light of the paths at the vertices of a step.
-    fn light<'a>(&'a mut self, world: &'a World, step: &Step, counts: &'a mut RayCounts) -> FoundLight<'a> {
-        let coherent = are_coherent(world, step.depth);
-        let (radiance, waiting, sheets) = (&mut self.radiance[..], &mut self.shadows, step.sheets());
+    /// Returns the light of the paths at the vertices of an edge.
+    fn light<'a>(&'a mut self, world: &'a World, edge: &Edge, counts: &'a mut RayCounts) -> FoundLight<'a> {
+        let coherent = are_coherent(world, edge.depth);
+        let (radiance, waiting, sheets) = (&mut self.radiance[..], &mut self.shadows, edge.sheets());
         FoundLight { world, radiance, waiting, counts, coherent, sheets, at_once: false }
     }
 
@@ -237,32 +237,32 @@ impl Batch {
         world: &World,
         packet: &mut Packet,
         mut going_on: u16,
-        step: Step,
+        edge: Edge,
         policy: &R,
         counts: &mut RayCounts,
     ) {
         if R::STOPS_AT_DIFFUSE {
             let blind = policy.edges().blind;
-            let (traced, outward) = split_edges(world, packet, going_on, blind, step.depth);
+            let (traced, outward) = split_edges(world, packet, going_on, blind, edge.depth);
             going_on = traced;
             if world.emitters.environment.is_some() {
-                self.add_outward(world, (packet, outward), step.sheets(), policy, counts);
+                self.add_outward(world, (packet, outward), edge.sheets(), policy, counts);
             }
         }
-        self.keep(packet, going_on, step.kept);
+        self.keep(packet, going_on, edge.kept);
     }
 
     /// Traces the rays that still wait for a full packet.
     fn finish<'w, R: PathPolicy<'w>>(
         &mut self,
         world: &World,
-        step: Step,
+        edge: Edge,
         policy: &R,
         counts: &mut RayCounts,
     ) {
-        self.light(world, &step, counts).finish();
-        self.trace_outward(world, step.sheets(), policy, counts);
-        self.count = *step.kept;
+        self.light(world, &edge, counts).finish();
+        self.trace_outward(world, edge.sheets(), policy, counts);
+        self.count = *edge.kept;
     }
 
     /// Stores the paths of a packet that continue, behind the `kept` paths stored before.
@@ -362,13 +362,13 @@ struct Hit<'a> {
 }
 
 /// Number of the edge that is traced, and of paths stored so far behind it.
-struct Step<'a> {
+struct Edge<'a> {
     depth: u32,
     max_depth: u32,
     kept: &'a mut usize,
 }
 
-impl Step<'_> {
+impl Edge<'_> {
     /// Returns the number of sheets that light may pass on one more edge. Each begins an edge of its own.
     fn sheets(&self) -> u32 {
         self.max_depth.saturating_sub(self.depth).saturating_sub(1)

@@ -78,7 +78,7 @@ fn absurd_numbers_never_panic() {
         let mut places = Vec::new();
         numbers(&model.json, &mut Vec::new(), &mut places);
         for (turn, place) in places.into_iter().enumerate() {
-            let keys: Vec<String> = place.iter().filter_map(Step::key).collect();
+            let keys: Vec<String> = place.iter().filter_map(Member::key).collect();
             let values = match properties.insert(keys) {
                 true => &absurd[..],
                 false => &absurd[turn % absurd.len()..][..1],
@@ -86,8 +86,8 @@ fn absurd_numbers_never_panic() {
             for absurd in values {
                 let mut json = model.json.clone();
                 let at = place.iter().fold(&mut json, |at, step| match step {
-                    Step::Key(key) => &mut at[key.as_str()],
-                    Step::Index(index) => &mut at[*index],
+                    Member::Key(key) => &mut at[key.as_str()],
+                    Member::Index(index) => &mut at[*index],
                 });
                 *at = absurd.clone();
                 survives(&Model { json, binary: model.binary.clone() }.glb());
@@ -97,33 +97,33 @@ fn absurd_numbers_never_panic() {
 }
 
 #[derive(Clone)]
-enum Step {
+enum Member {
     Key(String),
     Index(usize),
 }
 
-impl Step {
+impl Member {
     fn key(&self) -> Option<String> {
         match self {
-            Step::Key(key) => Some(key.clone()),
-            Step::Index(_) => None,
+            Member::Key(key) => Some(key.clone()),
+            Member::Index(_) => None,
         }
     }
 }
 
-fn numbers(value: &Value, way: &mut Vec<Step>, found: &mut Vec<Vec<Step>>) {
+fn numbers(value: &Value, way: &mut Vec<Member>, found: &mut Vec<Vec<Member>>) {
     match value {
         Value::Number(_) => found.push(way.clone()),
         Value::Array(list) => {
             for (i, value) in list.iter().enumerate() {
-                way.push(Step::Index(i));
+                way.push(Member::Index(i));
                 numbers(value, way, found);
                 way.pop();
             }
         }
         Value::Object(object) => {
             for (key, value) in object {
-                way.push(Step::Key(key.clone()));
+                way.push(Member::Key(key.clone()));
                 numbers(value, way, found);
                 way.pop();
             }

@@ -5,7 +5,7 @@
 
 use super::ReceiverPacket;
 use crate::lightcut::Transfer;
-use crate::lightcut::expected::{Outlook, expected_share, lobe_at};
+use crate::lightcut::expected::{ClusterView, expected_share, lobe_at};
 use crate::lights::{LightNode, VplKind};
 use base::math::{Frame, Lane, Mask, V3, f32x16};
 use glam::Vec3;
@@ -51,7 +51,7 @@ impl Transfer<'_> {
         let (cos_y, centre_y) = cluster.emitted(c, centre_sq.sqrt(), node);
         let near_sq =
             if cluster.local { cluster.gap_sq(c).max(f32x16::from(self.min_dist_sq)) } else { centre_sq };
-        let share = expected_share(Outlook {
+        let share = expected_share(ClusterView {
             near_sq,
             centre_sq,
             at_centre: [c.dot(frame[2]), centre_y],
