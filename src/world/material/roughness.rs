@@ -2,15 +2,15 @@
 //! and a constant roughness costs nothing more.
 //!
 //! Deviations: a level represents values within 1.1 % of its own. This is less than half a step of an 8-bit image at
-//! 0.5 in a texture of α², or at 0.18 in a texture of α. Where two textures give the roughness along u and v, or
-//! roughness and anisotropy, there is a model for each pair of levels. Levels are then up to 4.4 % off, or more where
-//! that takes more than 2048 models. The tables of the coat are made for every eighth level. Values below
-//! 1/1024 are clamped to it. The roughness of other lobes is the mean of its texture.
+//! 0.5 in a texture of α², or at 0.18 in a texture of α. Up to 32 texels without interpolation are levels of their own.
+//! Where two textures give the roughness along u and v, or roughness and anisotropy, there is a model for each pair of
+//! levels. Levels are then up to 4.4 % off, or more where that takes more than 2048 models. The tables of the coat are
+//! made for every eighth level. Values below 1/1024 are clamped to it. The roughness of other lobes is the mean of its
+//! texture.
 
 use base::math::{Rgb, luminance};
 use rayon::prelude::*;
-use scene::{AttributeTexture, Lobe, Material, Roughness, Scene, Texture, TextureId};
-use std::ops::RangeInclusive;
+use scene::{AttributeTexture, Filter, Lobe, Material, Roughness, Scene, Texture, TextureId};
 
 /// Number of levels between a value and its double.
 const LEVELS_PER_OCTAVE: i32 = 32;
@@ -27,24 +27,25 @@ const MAX_PAIRS: usize = 2048;
 /// Minimum distance of the levels in pairs.
 const MIN_STEP: i32 = 4;
 
-/// Values of a texture that count as one roughness.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct RoughnessLevel(i32);
+/// Value of a texture, and the values near it that count as one roughness.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct RoughnessLevel(f32);
 
 impl RoughnessLevel {
-    /// Returns the level of a texture's value.
-    #[inline]
-    fn of(value: f32) -> RoughnessLevel {
-        RoughnessLevel(((value.log2() * LEVELS_PER_OCTAVE as f32).round() as i32).max(MIN_LEVEL))
+    /// Returns the number of the level of a texture's value.
+    fn number(value: f32) -> i32 {
+        ((value.log2() * LEVELS_PER_OCTAVE as f32).round() as i32).max(MIN_LEVEL)
     }
 
-    fn value(self) -> f32 {
-        (self.0 as f32 / LEVELS_PER_OCTAVE as f32).exp2()
+    /// Returns the level of a number.
+    fn numbered(number: i32) -> RoughnessLevel {
+        RoughnessLevel((number as f32 / LEVELS_PER_OCTAVE as f32).exp2())
     }
 
     /// Returns the level whose coat tables this level uses.
     fn of_coat(self) -> RoughnessLevel {
-        RoughnessLevel((self.0 as f32 / COAT_STEP as f32).round() as i32 * COAT_STEP)
+        let number = Self::number(self.0) as f32 / COAT_STEP as f32;
+        Self::numbered(number.round() as i32 * COAT_STEP)
     }
 }
 
@@ -52,45 +53,39 @@ impl RoughnessLevel {
 #[derive(Clone, Debug)]
 struct TextureLevels {
     texture: TextureId,
-    /// Lowest and highest level of the texture's values.
-    range: RangeInclusive<i32>,
-    /// Distance of levels that have models, and their number.
-    step: i32,
-    count: usize,
+    /// Levels that have models, in the order of their values.
+    levels: Vec<RoughnessLevel>,
 }
 
 impl TextureLevels {
-    /// Returns the levels of a texture; `None` if there is no such texture.
-    fn of(texture: TextureId, scene: &Scene) -> Option<TextureLevels> {
-        let Some(image) = scene.textures.by_id(texture) else {
-            let (low, high) = scene.luminance_range(texture)?;
-            let range = RoughnessLevel::of(low).0..=RoughnessLevel::of(high).0;
-            return Some(TextureLevels { texture, range, step: 1, count: 0 }.at_steps_of(1));
+    /// Returns the levels of a texture at a distance of `step`, or its texels if they are few and not interpolated;
+    /// `None` if there is no such texture.
+    fn of(texture: TextureId, scene: &Scene, step: i32) -> Option<TextureLevels> {
+        let is_exact = |image: &&Texture| {
+            image.filter == Filter::Nearest && image.texels.len() <= LEVELS_PER_OCTAVE as usize
         };
-        let levels = || image.texels.iter().map(|texel| RoughnessLevel::of(luminance(texel)).0);
-        let range = levels().min()?..=levels().max()?;
-        Some(TextureLevels { texture, range, step: 1, count: 0 }.at_steps_of(1))
-    }
-
-    /// Returns the levels with models at a distance of `step`.
-    fn at_steps_of(self, step: i32) -> TextureLevels {
-        let span = (self.range.end() - self.range.start()) as usize;
-        TextureLevels { step, count: span.div_ceil(step as usize) + 1, ..self }
-    }
-
-    /// Returns the level of an index.
-    fn level(&self, index: usize) -> RoughnessLevel {
-        RoughnessLevel(self.range.start() + index as i32 * self.step)
+        if let Some(image) = scene.textures.by_id(texture).filter(is_exact) {
+            let least = RoughnessLevel::numbered(MIN_LEVEL).0;
+            let level = |texel| RoughnessLevel(luminance(texel).max(least));
+            let mut levels: Vec<RoughnessLevel> = image.texels.iter().map(level).collect();
+            levels.sort_by(|a, b| a.0.total_cmp(&b.0));
+            levels.dedup();
+            return Some(TextureLevels { texture, levels });
+        }
+        let (low, high) = scene.luminance_range(texture)?;
+        let [low, high] = [low, high].map(RoughnessLevel::number);
+        let levels = (low..high + step).step_by(step as usize).map(RoughnessLevel::numbered).collect();
+        Some(TextureLevels { texture, levels })
     }
 
     /// Returns the index of the level nearest to a value of the texture.
     #[inline]
     fn index(&self, value: f32) -> usize {
-        let level = RoughnessLevel::of(value).0.clamp(*self.range.start(), *self.range.end());
-        let distance = level - self.range.start();
-        // The common case, without a division.
-        let index = if self.step == 1 { distance } else { (distance + self.step / 2) / self.step };
-        (index as usize).min(self.count - 1)
+        let above =
+            self.levels.partition_point(|level| level.0 < value).clamp(1, self.levels.len().max(2) - 1);
+        let is_below =
+            self.levels.get(above).is_none_or(|level| value * value < level.0 * self.levels[above - 1].0);
+        if is_below { above - 1 } else { above }
     }
 }
 
@@ -117,18 +112,17 @@ impl RoughnessLevels {
             None => part.lobes.iter().find_map(of_lobe),
         };
         let (first, second) = material.parts().find_map(of_part)?;
-        let first = TextureLevels::of(first, scene)?;
-        let second = second.and_then(|second| TextureLevels::of(second, scene));
-        let Some(mut second) = second else { return Some(RoughnessLevels { first, second }) };
+        let levels = |texture, step| TextureLevels::of(texture, scene, step);
         // Levels of two textures are wider, so that there are few enough pairs.
-        let (mut first, mut step) = (first, MIN_STEP);
-        loop {
-            (first, second) = (first.at_steps_of(step), second.at_steps_of(step));
-            if first.count * second.count <= MAX_PAIRS {
+        let mut step = MIN_STEP;
+        while let Some(second) = second.and_then(|second| levels(second, step)) {
+            let first = levels(first, step)?;
+            if first.levels.len() * second.levels.len() <= MAX_PAIRS {
                 return Some(RoughnessLevels { first, second: Some(second) });
             }
             step *= 2;
         }
+        Some(RoughnessLevels { first: levels(first, 1)?, second: None })
     }
 
     /// Returns the texture that is looked up first.
@@ -139,10 +133,10 @@ impl RoughnessLevels {
     /// Lists the levels of all models, by index.
     pub fn all(&self) -> impl Iterator<Item = LevelPair> + use<> {
         let RoughnessLevels { first, second } = self.clone();
-        let of_second = second.as_ref().map_or(1, |second| second.count);
-        (0..first.count * of_second).map(move |index| {
-            let mut pair = vec![(first.texture, first.level(index / of_second))];
-            pair.extend(second.as_ref().map(|second| (second.texture, second.level(index % of_second))));
+        let of_second = second.as_ref().map_or(1, |second| second.levels.len());
+        (0..first.levels.len() * of_second).map(move |index| {
+            let mut pair = vec![(first.texture, first.levels[index / of_second])];
+            pair.extend(second.as_ref().map(|second| (second.texture, second.levels[index % of_second])));
             pair
         })
     }
@@ -152,7 +146,7 @@ impl RoughnessLevels {
     pub fn index(&self, value: impl Fn(TextureId) -> f32) -> usize {
         let first = self.first.index(value(self.first.texture));
         match &self.second {
-            Some(second) => first * second.count + second.index(value(second.texture)),
+            Some(second) => first * second.levels.len() + second.index(value(second.texture)),
             None => first,
         }
     }
@@ -188,7 +182,7 @@ impl RoughnessValues<'_> {
     fn alpha_at(&self, roughness: &Roughness, level: impl Fn(RoughnessLevel) -> RoughnessLevel) -> f32 {
         roughness.value(|texture| {
             let known = self.levels.and_then(|levels| levels.iter().find(|(known, _)| *known == texture));
-            known.map_or_else(|| luminance(self.means.of(texture)), |(_, found)| level(*found).value())
+            known.map_or_else(|| luminance(self.means.of(texture)), |(_, found)| level(*found).0)
         })
     }
 }
@@ -228,6 +222,25 @@ mod tests {
     use scene::{Camera, Distribution, Fresnel};
 
     #[test]
+    fn few_texels_are_levels_of_their_own() {
+        let mut scene = scene(Camera::default(), [1, 1]);
+        let values = [0.3, 0.05, 0.05, 0.3];
+        let ids = [(); 2].map(|()| add_texture(&mut scene, texture(2, &values.map(Rgb::splat))));
+        let alpha = ids.map(|texture| Roughness::Textured { texture, scale: 1.0 });
+        let (distribution, fresnel, scale) = (Distribution::Ggx, Fresnel::One, Rgb::ONE.into());
+        let lobes = vec![Lobe::Anisotropic { distribution, alpha, fresnel, scale }];
+        let levels = RoughnessLevels::of(&Material { lobes, ..Material::default() }, &scene).expect("levels");
+        let all: Vec<LevelPair> = levels.all().collect();
+        assert_eq!(all.len(), 4);
+        for wanted in [[0.3, 0.05], [0.05, 0.3], [0.3, 0.3], [0.05, 0.05]] {
+            let found = &all[levels.index(|id| wanted[usize::from(id == ids[1])])];
+            for ((_, level), wanted) in found.iter().zip(wanted) {
+                assert!((level.0 / wanted - 1.0).abs() < 1e-6, "{level:?} for {wanted}");
+            }
+        }
+    }
+
+    #[test]
     fn pairs_of_levels_are_few_and_near_the_values() {
         for (least, most_off) in [(0.25f32, 0.045), (1e-3, 0.4)] {
             let mut scene = scene(Camera::default(), [1, 1]);
@@ -244,7 +257,7 @@ mod tests {
                 let wanted = [values[i].x, values[j].x];
                 let found = &all[levels.index(|id| wanted[usize::from(id == ids[1])])];
                 for ((_, level), wanted) in found.iter().zip(wanted) {
-                    let off = (level.value() / wanted - 1.0).abs();
+                    let off = (level.0 / wanted - 1.0).abs();
                     assert!(off < most_off, "{least}: {off} at {i}, {j}");
                 }
             }
