@@ -61,12 +61,8 @@ impl<'w> Gatherers<'w> {
         {
             return;
         }
-        if settings.share {
-            self.together(c, rays, points, patch, &cut, &mut shaded);
-        } else {
-            for tasks in patch.chunks(LANES) {
-                self.alone(c, rays, points, tasks, &cut, &mut shaded);
-            }
+        for tasks in patch.chunks(if settings.share { patch.len() } else { 1 }) {
+            self.by_cut(c, rays, points, tasks, &cut, &mut shaded);
         }
     }
 
@@ -100,7 +96,7 @@ impl<'w> Gatherers<'w> {
     }
 
     /// Shades a patch by the cut of its anchors.
-    fn together<V: Visibility>(
+    fn by_cut<V: Visibility>(
         &mut self,
         c: &ShadingContext,
         rays: &V,
@@ -139,32 +135,6 @@ impl<'w> Gatherers<'w> {
                 self.compensator.others(c, near, &self.receivers, &mut sum);
             }
             report(tasks(), &sum, clusters, shaded);
-        }
-    }
-
-    /// Shades up to sixteen points, each by a cut of its own.
-    fn alone<V: Visibility>(
-        &mut self,
-        c: &ShadingContext,
-        rays: &V,
-        points: &ShadingPoints<'w>,
-        tasks: &[ShadingTask],
-        cut: &CutSettings,
-        shaded: &mut impl FnMut(ShadingTask, Shaded),
-    ) {
-        let (mut sum, mut clusters) = (PacketSum::default(), [0; LANES]);
-        for (lane, task) in tasks.iter().enumerate() {
-            self.receivers.set([task.receiver(points)]);
-            let own = self.packet.gather(&c.transfer, rays, &self.receivers, cut);
-            (sum.radiance[lane], sum.clamps.bounds[lane]) = (own.sum.radiance[0], own.sum.clamps.bounds[0]);
-            clusters[lane] = own.clusters.len() as u32;
-        }
-        if let Some(c) = &c.compensation {
-            self.receivers.set(tasks.iter().map(|task| task.receiver(points)));
-            self.compensator.anchors(c, cut.origin, &self.receivers, &mut sum, None);
-        }
-        for ((task, radiance), clusters) in tasks.iter().zip(sum.radiance).zip(clusters) {
-            shaded(*task, Shaded { radiance, clusters });
         }
     }
 }
