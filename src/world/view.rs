@@ -4,11 +4,11 @@
 //! number of views.
 
 use base::film::{CameraMatrices, Window};
-use base::math::{Cone, LANES, Vec2x16};
+use base::math::Cone;
 use base::sampling::{Sampler, hash};
-use embree::{Ray, Rays16};
+use embree::Ray;
 use glam::{DVec3, Vec2, Vec3};
-use scene::{Camera, Cameras, PixelFilter, Projection};
+use scene::{Camera, Cameras, Projection};
 
 /// Maximum number of pixels rendered at once (16384 × 65536), which bounds the memory.
 const MAX_PIXELS: u64 = 1 << 30;
@@ -119,35 +119,6 @@ impl View {
             Projection::Pinhole | Projection::Parallel => Vec2::splat(0.5),
         };
         self.ray(pixel, jitter, lens)
-    }
-
-    /// Sets `rays` to those of sixteen samples: in each lane [`View::sample_ray`] of its pixel and jitter, and of the
-    /// `[seed, sample]` in `numbers`.
-    #[inline]
-    pub fn sample_rays16(
-        &self,
-        pixels: &[[u32; 2]; LANES],
-        jitter: &Vec2x16,
-        numbers: &[[u32; 2]; LANES],
-        rays: &mut Rays16,
-    ) {
-        let camera = &self.camera;
-        if camera.projection != Projection::Pinhole || camera.filter != PixelFilter::Box {
-            for i in 0..LANES {
-                let [seed, sample] = numbers[i];
-                rays.set(i, &self.sample_ray(pixels[i], jitter.get(i), seed, sample));
-            }
-            return;
-        }
-        // A box filter places samples at their jitter, and a pinhole needs no other random numbers.
-        for i in 0..LANES {
-            let [x, y] = pixels[i];
-            let place = [x as f32 + jitter.x[i], y as f32 + jitter.y[i]];
-            let direction = camera.direction(place, self.window.film);
-            let cos = direction.dot(camera.forward);
-            let (t_near, t_far) = (camera.near / cos, camera.far / cos);
-            rays.set(i, &Ray { origin: camera.origin, t_near, direction, t_far });
-        }
     }
 
     /// Returns the ray through a pixel and a point of the lens.
@@ -305,35 +276,6 @@ mod tests {
             });
             assert!((image[0] / image[3] * 40.0 - f64::from(pixel[0]) - 0.5).abs() < 1e-4, "{image:?}");
             assert!((image[1] / image[3] * 30.0 - f64::from(pixel[1]) - 0.5).abs() < 1e-4, "{image:?}");
-        }
-    }
-
-    #[test]
-    fn rays_of_sixteen_samples_are_those_of_each_to_the_last_bit() {
-        let (forward, right) = (Vec3::new(0.6, 0.0, -0.8), Vec3::new(0.8, 0.0, 0.6));
-        let plain = Camera { forward, right, tan_half_x: 0.7, near: 0.1, far: 1e3, ..Camera::default() };
-        let lens = Projection::Lens { radius: 0.1, distance: 3.0 };
-        let cameras = [
-            Camera { origin: Vec3::new(3.0, -2.0, 1.0), ..plain },
-            Camera { filter: PixelFilter::TENT, far: f32::INFINITY, near: 0.0, ..plain },
-            Camera { projection: lens, ..plain },
-            Camera { projection: Projection::Parallel, ..plain },
-        ];
-        for camera in cameras {
-            let view = View::whole(camera, [1920, 1080]);
-            let mut sampler = Sampler::new(1, 2);
-            for round in 0..20 {
-                let pixels = std::array::from_fn(|i| [(97 * i as u32 + round) % 1920, 61 * i as u32]);
-                let numbers = std::array::from_fn(|i| [round, i as u32]);
-                let mut jitter = Vec2x16::default();
-                (0..LANES).for_each(|i| jitter.set(i, sampler.next_2d()));
-                let mut rays = Rays16::default();
-                view.sample_rays16(&pixels, &jitter, &numbers, &mut rays);
-                for i in 0..LANES {
-                    let [seed, sample] = numbers[i];
-                    assert_eq!(rays.get(i), view.sample_ray(pixels[i], jitter.get(i), seed, sample));
-                }
-            }
         }
     }
 

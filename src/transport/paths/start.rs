@@ -58,7 +58,9 @@ pub fn start(
             }
         }
         let mut rays = Rays16::default();
-        view.sample_rays16(&pixels, &jitter, &numbers, &mut rays);
+        for (i, [seed, sample]) in numbers.into_iter().enumerate() {
+            rays.set(i, &view.sample_ray(pixels[i], jitter.get(i), seed, sample));
+        }
         if world.scene.hides_emitters {
             (0..count).for_each(|i| rays.set(i, &world.behind_hidden(rays.get(i))));
         }
