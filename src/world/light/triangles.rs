@@ -9,7 +9,7 @@ use base::sampling::uniform_triangle;
 use glam::Vec2;
 
 /// Maximum number of triangles of a light that are tried one after the other for all lanes.
-const MAX_TRIED: usize = 16;
+const MAX_TRIED: usize = 8;
 
 /// Points on emitting triangles, one per lane. Lanes of other emitters have zero area.
 #[derive(Default)]
