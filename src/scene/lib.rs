@@ -26,7 +26,7 @@ use std::path::PathBuf;
 pub use attribute::{Attribute, AttributeId, AttributeValues, interpolated};
 pub use camera::{Camera, Cameras, MAX_FRAMES, MAX_SIDE, Projection};
 pub use light::{DeltaLight, DistantDisc, Environment, EnvironmentMap, SpotImage};
-pub use material::{Blend, Coat, Distribution, Fresnel, Lobe, Material, MaterialId, Relief};
+pub use material::{Blend, Coat, Distribution, Fresnel, Lobe, Material, MaterialId, Relief, ReliefRules};
 pub use mesh::{Emission, Group, Mesh};
 pub use parameter::{Parameter, Reflectance, Roughness, Share};
 pub use pixel_filter::PixelFilter;

@@ -34,6 +34,8 @@ pub struct Material {
     pub opacity: Option<Share>,
     /// Relief, which changes the shading normals.
     pub relief: Option<Relief>,
+    /// Rules for the relief where it leans away.
+    pub relief_rules: ReliefRules,
     /// Absorption coefficient σ of what is inside solid glass, per channel and per unit of length of the scene.
     ///
     /// Light that goes the way d inside keeps the share exp(-σ d).
@@ -276,6 +278,15 @@ pub enum Fresnel {
         /// Reflectance at grazing incidence.
         edge: f32,
     },
+}
+
+/// Rules for a relief where it leans away from the viewer or from light.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct ReliefRules {
+    /// True if a normal that leans away from the viewer is mirrored at the shading normal.
+    pub mirrors: bool,
+    /// True if the bumps shadow each other, as microfacets do.
+    pub shadows: bool,
 }
 
 /// Relief of a surface, from the raw texels of a texture.

@@ -61,9 +61,15 @@ impl Surfaces16 {
 }
 
 impl World {
-    /// Returns the surfaces at sixteen hits, all of which must be valid.
+    /// Returns the surfaces at sixteen hits, all of which must be valid, with reliefs as they are without a viewer.
     #[inline]
     pub fn surfaces(&self, hits: &Hits16) -> Surfaces16 {
+        self.surfaces_along(hits, &Vec3x16::ZERO)
+    }
+
+    /// Returns the surfaces that rays along `directions` hit, all of which must be valid.
+    #[inline]
+    pub fn surfaces_along(&self, hits: &Hits16, directions: &Vec3x16) -> Surfaces16 {
         let mut s =
             Surfaces16 { mesh: hits.geometry, triangle: hits.primitive, t: hits.t, ..Default::default() };
         s.barycentric = Vec2x16 { x: hits.u, y: hits.v };
@@ -94,11 +100,10 @@ impl World {
         }
         if let Some(reliefs) = &self.reliefs {
             for i in 0..LANES {
-                let (mesh, barycentric) = (s.mesh[i], s.barycentric.get(i));
-                let frame = self.with_triangle(mesh, s.triangle[i], |seen, triangle| {
-                    let mut frame = s.frame(i);
-                    reliefs.turn(&mut frame, mesh, seen, triangle, barycentric);
-                    frame
+                let frame = self.with_triangle(s.mesh[i], s.triangle[i], |seen, triangle| {
+                    let mut surface = s.get(i);
+                    reliefs.turn(&mut surface, seen, triangle, -directions.get(i));
+                    surface.frame
                 });
                 s.tangent.set(i, frame.tangent);
                 s.bitangent.set(i, frame.bitangent);
@@ -149,7 +154,9 @@ impl World {
             let mesh = self.mesh(s.mesh[i]);
             let uv = || at[i].unwrap_or_else(|| self.coordinates(s, i));
             let covered = || self.covered(s.mesh[i], s.triangle[i], s.footprint.get(i));
-            self.materials.at_coordinates(mesh.material, uv, covered, |id| self.attribute(s, i, id))
+            let bsdf =
+                self.materials.at_coordinates(mesh.material, uv, covered, |id| self.attribute(s, i, id));
+            bsdf.on_relief(|| self.level_normal(&s.get(i)))
         })
     }
 

@@ -1,10 +1,11 @@
 //! Shading frames on surfaces with a relief or with an anisotropic material.
 //!
 //! Paper: J. F. Blinn, *Simulation of Wrinkled Surfaces*, 1978, for heights; definitions are those of Mitsuba 3's
-//! `bumpmap` and `normalmap`.
+//! `bumpmap` and `normalmap`. Shadows of bumps are in [`crate::material`].
 //! Deviations: the relief changes shading alone, neither outlines nor shadows. A two-sided surface is shaded as seen
 //! from behind if its turned normal faces away from the eye.
 
+use super::Surface;
 use super::instances::SeenAt;
 use super::triangle::Triangle;
 use base::math::{Frame, Rgb};
@@ -22,6 +23,8 @@ pub(super) struct Reliefs {
 #[derive(Clone, Copy, Default, PartialEq)]
 struct Turn {
     relief: Option<Relief>,
+    /// True if normals that lean away from the viewer are mirrored.
+    mirrors: bool,
     /// Angle from u to the x axis, in radians, if the material is anisotropic.
     from_u: Option<f32>,
     /// Texture of directions that replace u.
@@ -37,7 +40,8 @@ impl Reliefs {
                 let has_direction = !(mesh.uvs.is_empty() && mesh.tangents.is_empty());
                 let from_u = material.anisotropy_axis().filter(|_| has_direction);
                 let direction = from_u.and_then(|(_, direction)| direction);
-                Turn { relief: material.relief, from_u: from_u.map(|(angle, _)| angle), direction }
+                let (relief, mirrors) = (material.relief, material.relief_rules.mirrors);
+                Turn { relief, mirrors, from_u: from_u.map(|(angle, _)| angle), direction }
             })
         };
         let turns: Vec<Turn> = scene.meshes.iter().map(of).collect();
@@ -46,15 +50,19 @@ impl Reliefs {
         any.then(|| Reliefs { turns, textures: scene.textures.clone() })
     }
 
-    /// Turns the shading frame at barycentric weights `b` of a triangle in the scene's coordinates by the relief of its
-    /// mesh, whose number is `index`, and turns x to the direction that its material asks for.
+    /// Turns the shading frame of a surface by the relief of its mesh, as seen from the vector `out`, or from nowhere
+    /// if that is 0. Turns x to the direction that its material asks for. `triangle` is in the scene's coordinates.
     #[inline]
-    pub fn turn(&self, frame: &mut Frame, index: u32, seen: SeenAt, triangle: &Triangle, b: Vec2) {
-        let Turn { relief, from_u, direction } = &self.turns[index as usize];
+    pub fn turn(&self, s: &mut Surface, seen: SeenAt, triangle: &Triangle, out: Vec3) {
+        let (frame, b) = (&mut s.frame, s.barycentric);
+        let Turn { relief, mirrors, from_u, direction } = &self.turns[s.mesh as usize];
         if let Some(relief) = relief {
             let normal = frame.normal;
-            let turned = self.normal(relief, seen, triangle, b, normal);
-            *frame = Frame::from_normal(turned.and_then(Vec3::try_normalize).unwrap_or(normal));
+            let turned = self.normal(relief, seen, triangle, b, normal).and_then(Vec3::try_normalize);
+            let turned = turned.unwrap_or(normal);
+            let leans_away = *mirrors && normal.dot(out) * turned.dot(out) < 0.0;
+            let mirrored = || normal * (2.0 * normal.dot(turned)) - turned;
+            *frame = Frame::from_normal(if leans_away { mirrored() } else { turned });
         }
         if let Some(angle) = from_u {
             let [along_u, along_v] = axes(seen, triangle, b, frame.normal);
@@ -137,7 +145,7 @@ fn derivatives(mesh: &Mesh, triangle: &Triangle) -> [Vec3; 2] {
 #[cfg(test)]
 mod tests {
     use crate::testkit::*;
-    use base::math::Rgb;
+    use base::math::{Rgb, Vec3x16};
     use embree::{Hits16, Ray};
     use glam::{Vec2, Vec3, Vec4};
     use scene::{
@@ -155,19 +163,23 @@ mod tests {
         world(scene)
     }
 
-    /// Returns the shading normal at (x, y), and checks that a packet of hits has the same.
-    fn normal(world: &WorldAndView, x: f32, y: f32) -> Vec3 {
-        let ray = Ray::new(Vec3::new(x, y, 1.0), -Vec3::Z);
-        let surface = world.intersect(&ray).expect("the square");
-        let hit = world.accel.closest_hit(&ray).expect("the square");
-        let hits = Hits16 {
+    /// Returns sixteen hits of a ray.
+    fn repeated(world: &WorldAndView, ray: &Ray) -> Hits16 {
+        let hit = world.accel.closest_hit(ray).expect("the square");
+        Hits16 {
             t: [hit.t; 16],
             u: [hit.u; 16],
             v: [hit.v; 16],
             geometry: [hit.geometry; 16],
             primitive: [hit.primitive; 16],
-        };
-        assert_eq!(world.surfaces(&hits).frame(3), surface.frame);
+        }
+    }
+
+    /// Returns the shading normal at (x, y), and checks that a packet of hits has the same.
+    fn normal(world: &WorldAndView, x: f32, y: f32) -> Vec3 {
+        let ray = Ray::new(Vec3::new(x, y, 1.0), -Vec3::Z);
+        let surface = world.intersect(&ray).expect("the square");
+        assert_eq!(world.surfaces(&repeated(world, &ray)).frame(3), surface.frame);
         assert_eq!(surface.normal, Vec3::Z);
         surface.frame.normal
     }
@@ -205,6 +217,63 @@ mod tests {
                 "{local} {}",
                 normal(&flat, 1.1, 0.4)
             );
+        }
+    }
+
+    #[test]
+    fn normals_that_lean_away_from_the_viewer_are_mirrored_by_rule() {
+        let relief = Relief::Normals { texture: TextureId(0), strength: 1.0, y_along_v: false };
+        let local = Vec3::new(0.6, 0.0, 0.8);
+        for mirrors in [false, true] {
+            let mut staged = staged(square(relief, 1, vec![0.5 * local + 0.5]));
+            staged.materials[0].relief_rules.mirrors = mirrors;
+            let world = world(staged);
+            for (out, leans_away) in [
+                (Vec3::new(-0.9, 0.1, 0.3), true),
+                (Vec3::new(-0.3, 0.1, 0.9), false),
+                (Vec3::new(0.9, 0.1, -0.3), true),
+                (Vec3::new(0.3, 0.1, -0.9), false),
+            ] {
+                let ray = Ray::new(Vec3::new(1.1, 0.4, 0.0) + out, -out);
+                let surface = world.intersect(&ray).expect("the square");
+                let x = if mirrors && leans_away { -local.x } else { local.x };
+                let expected = Vec3::new(x, local.y, local.z);
+                assert!((surface.frame.normal - expected).length() < 1e-5, "{out} {surface:?}");
+                let hits = repeated(&world, &ray);
+                let along = world.surfaces_along(&hits, &Vec3x16::splat(-out));
+                assert_eq!(along.frame(5), surface.frame);
+                assert!((world.surfaces(&hits).frame(5).normal - local).length() < 1e-5);
+            }
+        }
+    }
+
+    #[test]
+    fn bumps_shadow_as_microfacets_of_their_slope_do() {
+        let relief = Relief::Normals { texture: TextureId(0), strength: 1.0, y_along_v: false };
+        let local = Vec3::new(0.48, 0.36, 0.8);
+        let [plain, shadowed] = [false, true].map(|shadows| {
+            let mut staged = staged(square(relief, 1, vec![0.5 * local + 0.5]));
+            staged.materials[0].relief_rules.shadows = shadows;
+            staged.materials[0].two_sided = true;
+            world(staged)
+        });
+        for side in [1.0, -1.0] {
+            let ray = Ray::new(Vec3::new(1.1, 0.4, side), Vec3::NEG_Z * side);
+            let surface = plain.intersect(&ray).expect("the square");
+            let hits = repeated(&shadowed, &ray);
+            for wi in [Vec3::new(0.1, -0.2, 0.9), Vec3::new(0.9, 0.3, 0.1), Vec3::new(0.0, 0.0, 1.0)] {
+                let wi = wi.normalize() * side;
+                let [wo, local_wi] = [-ray.direction, wi].map(|v| surface.frame.to_local(v));
+                // One eighth of the square of the slope, 0.75.
+                let (alpha_sq, tan_sq) = (0.5625 / 8.0, 1.0 / (wi.z * wi.z) - 1.0);
+                let share = 2.0 / (1.0 + (1.0 + alpha_sq * tan_sq).sqrt());
+                let expected = plain.bsdf(&surface).eval(wo, local_wi) * share;
+                let found = shadowed.bsdf(&surface).eval(wo, local_wi);
+                assert!((found - expected).length() < 1e-5, "{wi} {found} {expected}");
+                let bsdfs = shadowed.bsdfs(&shadowed.surfaces(&hits), Vec3x16::splat(wo));
+                let packet = bsdfs.eval_pdf(&Vec3x16::splat(local_wi), u16::MAX).0.get(3);
+                assert!((packet - expected).length() < 1e-5, "{wi} {packet} {expected}");
+            }
         }
     }
 

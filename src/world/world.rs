@@ -85,33 +85,35 @@ impl World {
     /// Returns the nearest surface along a ray.
     #[inline]
     pub fn intersect(&self, ray: &Ray) -> Option<Surface> {
-        self.accel.closest_hit(ray).map(|hit| self.surface(&hit))
+        self.accel.closest_hit(ray).map(|hit| self.surface_from(&hit, -ray.direction))
     }
 
-    /// Returns the surface at a hit.
+    /// Returns the surface at a hit, with the relief as it is without a viewer.
     #[inline]
     pub fn surface(&self, hit: &Hit) -> Surface {
-        self.with_triangle(hit.geometry, hit.primitive, |seen, triangle| self.surface_on(hit, seen, triangle))
+        self.surface_from(hit, Vec3::ZERO)
     }
 
-    /// Returns the surface at a hit on a triangle in the scene's coordinates.
-    #[inline(always)]
-    fn surface_on(&self, hit: &Hit, seen: SeenAt, triangle: &Triangle) -> Surface {
+    /// Returns the surface at a hit, seen from the vector `out`.
+    #[inline]
+    fn surface_from(&self, hit: &Hit, out: Vec3) -> Surface {
         let barycentric = Vec2::new(hit.u, hit.v);
-        let mut frame = Frame::from_normal(seen.shading_normal(triangle, barycentric));
-        if let Some(reliefs) = &self.reliefs {
-            reliefs.turn(&mut frame, hit.geometry, seen, triangle, barycentric);
-        }
-        Surface {
-            position: triangle.position(barycentric),
-            normal: triangle.normal,
-            frame,
-            barycentric,
-            mesh: hit.geometry,
-            triangle: hit.primitive,
-            t: hit.t,
-            footprint: Vec3::ZERO,
-        }
+        self.with_triangle(hit.geometry, hit.primitive, |seen, triangle| {
+            let mut surface = Surface {
+                position: triangle.position(barycentric),
+                normal: triangle.normal,
+                frame: Frame::from_normal(seen.shading_normal(triangle, barycentric)),
+                barycentric,
+                mesh: hit.geometry,
+                triangle: hit.primitive,
+                t: hit.t,
+                footprint: Vec3::ZERO,
+            };
+            if let Some(reliefs) = &self.reliefs {
+                reliefs.turn(&mut surface, seen, triangle, out);
+            }
+            surface
+        })
     }
 
     /// Returns the unit geometric normal of a triangle, on the front by winding.
@@ -134,7 +136,14 @@ impl World {
         let uv = || mesh.uv(&self.triangles.get(s.mesh, s.triangle).vertices, s.barycentric);
         let covered = || self.covered(s.mesh, s.triangle, s.footprint);
         let attribute = |id| mesh.attribute(id, s.triangle as usize, s.barycentric);
-        self.materials.at_coordinates(mesh.material, uv, covered, attribute)
+        let bsdf = self.materials.at_coordinates(mesh.material, uv, covered, attribute);
+        bsdf.on_relief(|| self.level_normal(s))
+    }
+
+    /// Returns the normal of a surface without its relief, in the shading frame.
+    pub fn level_normal(&self, s: &Surface) -> Vec3 {
+        let level = |seen: SeenAt, triangle: &Triangle| seen.shading_normal(triangle, s.barycentric);
+        s.frame.to_local(self.with_triangle(s.mesh, s.triangle, level))
     }
 
     /// Returns the radiance that a surface emits towards the unit vector `out`: as much as the surface is opaque there.

@@ -11,7 +11,7 @@ use crate::error::SceneError;
 use crate::layers;
 use crate::layers::CoatSurface;
 use base::math::{Rgb, luminance};
-use scene::{Fresnel, Lobe, Material, MaterialId, Reflectance, Relief, Share};
+use scene::{Fresnel, Lobe, Material, MaterialId, Reflectance, Relief, ReliefRules, Share};
 use std::rc::Rc;
 
 /// Sum of missing weights of a mixture, above which that share is absorbed. Less is rounding.
@@ -176,7 +176,10 @@ impl Converter<'_> {
             None => self.only(bsdf, "texture")?,
         };
         let scale = bsdf.float("scale")?.unwrap_or(1.0) as f32;
-        self.name_relief_rules(bsdf)?;
+        // Only Mitsuba 3 has these rules.
+        let rule = |name| bsdf.boolean(name, !self.document.is_old);
+        let relief_rules =
+            ReliefRules { mirrors: rule("flip_invalid_normals")?, shadows: rule("use_shadowing_function")? };
         let map = texture.map(|texture| self.texture(&texture, 0)).transpose()?;
         let relief = match map {
             Some(Reflectance::Textured { texture, .. }) if !self.contents.is_image(texture) => {
@@ -199,32 +202,10 @@ impl Converter<'_> {
                 "the inner one is left out",
             )?;
         }
-        Ok(Material { relief: relief.or(nested.relief), ..nested })
-    }
-
-    /// Names two rules for normals that lean away from the viewer. Mitsuba 3 applies them unless they are off.
-    fn name_relief_rules(&mut self, bsdf: &Object) -> Result<(), SceneError> {
-        if self.document.is_old {
-            return Ok(());
-        }
-        let mut applied = Vec::new();
-        for name in ["flip_invalid_normals", "use_shadowing_function"] {
-            let (is_given, is_on) = (bsdf.has(name), bsdf.boolean(name, true)?);
-            if is_given && is_on {
-                self.log.warn(&bsdf.place, format!("\"{name}\" is not supported"), "it is off")?;
-            } else if is_on {
-                applied.push(name);
-            }
-        }
-        if !applied.is_empty() {
-            let what = format!("{} of {} are not supported", applied.join(" and "), bsdf.plugin);
-            self.log.note(
-                &bsdf.place,
-                what,
-                "where the relief leans away from the viewer, it is up to 15 % darker or brighter",
-            );
-        }
-        Ok(())
+        Ok(match relief {
+            Some(_) => Material { relief, relief_rules, ..nested },
+            None => nested,
+        })
     }
 
     /// Returns nested BSDFs, each with its share of the light. The remaining share is absorbed.

@@ -9,7 +9,7 @@ use base::math::Rgb;
 use glam::{DVec3, Vec3};
 use scene::{
     DeltaLight, Distribution, Environment, Fresnel, Lobe, Material, PixelFilter, Projection, Reflectance,
-    Roughness, Share, TextureId,
+    ReliefRules, Roughness, Share, TextureId,
 };
 use std::fs;
 
@@ -387,4 +387,20 @@ fn checkerboards_of_numbers_have_their_squares_exchanged_in_version_3() {
     let at_origin = |id: TextureId| scene.textures.by_id(id).unwrap().lookup(glam::Vec2::new(0.2, 0.8)).x;
     let found = [material.opacity.unwrap().texture(), material.diffuse.texture()];
     assert_eq!(found.map(|id| at_origin(id.unwrap())), [0.1, 0.7]);
+}
+
+#[test]
+fn reliefs_mirror_and_shadow_unless_told_otherwise_in_version_3() {
+    let off = |name: &str| format!("<boolean name=\"{name}\" value=\"false\"/>");
+    for (parameters, mirrors, shadows) in [
+        (String::new(), true, true),
+        (off("flip_invalid_normals"), false, true),
+        (off("use_shadowing_function"), true, false),
+    ] {
+        let map = "<texture type=\"checkerboard\" name=\"normalmap\"/><bsdf type=\"diffuse\"/>";
+        let bsdf = format!("<bsdf type=\"normalmap\">{parameters}{map}</bsdf>");
+        let loaded = load_body(&format!("<shape type=\"rectangle\">{bsdf}</shape>")).unwrap();
+        let material = loaded.scene.materials.iter().find(|material| material.relief.is_some()).unwrap();
+        assert_eq!(material.relief_rules, ReliefRules { mirrors, shadows }, "{parameters}");
+    }
 }

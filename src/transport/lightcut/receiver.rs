@@ -51,7 +51,7 @@ impl<'m> Receiver<'m> {
         let material = match bsdf.lambert_albedo() {
             _ if !front && !bsdf.two_sided() => ReceiverMaterial::Lambert(Rgb::ZERO),
             Some(albedo) => ReceiverMaterial::Lambert(albedo * FRAC_1_PI),
-            None => ReceiverMaterial::General(bsdf),
+            None => ReceiverMaterial::General(if front { bsdf } else { bsdf.turned() }),
         };
         let mirror = Frame::from_normal(frame.to_world(Vec3::new(-wo.x, -wo.y, wo.z)));
         let (baseline_luminance, edges) = (0.0, u16::MAX);

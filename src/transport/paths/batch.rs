@@ -384,8 +384,9 @@ fn are_coherent(world: &World, depth: u32) -> bool {
 /// Returns the surfaces that a packet has hit in the lanes of `found`, with the footprints of its rays.
 fn covered(world: &World, packet: &Packet, hits: &mut Hits16, found: u16) -> Surfaces16 {
     hits.repeat(found.trailing_zeros() as usize, !found);
-    let mut surfaces = world.surfaces(hits);
-    world.cover(&mut surfaces, &packet.rays.directions(), found, |lane| packet.cones[lane]);
+    let directions = packet.rays.directions();
+    let mut surfaces = world.surfaces_along(hits, &directions);
+    world.cover(&mut surfaces, &directions, found, |lane| packet.cones[lane]);
     surfaces
 }
 

@@ -75,6 +75,7 @@ pub(super) fn collect<'w>(world: &'w World, hits: &FirstHits16, lanes: u16, grou
         let first = left.trailing_zeros() as usize;
         let alike = hits.like(world, first) & left | 1 << first;
         let (bsdf, lanes) = world.mean_bsdf(surfaces, alike);
+        let bsdf = bsdf.on_relief(|| world.level_normal(&surfaces.get(first)));
         left &= !lanes;
         let front = directions.get(first).dot(surfaces.shading_normal.get(first)) < 0.0;
         let (mut normal_sum, mut out) = (Vec3::ZERO, Vec3::ZERO);

@@ -64,7 +64,7 @@ impl<'m> AlikeBsdfs16<'m> {
     /// coats differ, or a material transmits light.
     pub fn new(at: impl Fn(usize) -> (Bsdf<'m>, Vec3)) -> Option<AlikeBsdfs16<'m>> {
         let first = at(0).0;
-        let (mut base, mut wo) = (Vec3x16::ZERO, Vec3x16::ZERO);
+        let (mut base, mut wo, mut level_normal) = (Vec3x16::ZERO, Vec3x16::ZERO, Vec3x16::ZERO);
         let mut scales = [Vec3x16::ZERO; MAX_LOBES];
         for lane in 0..LANES {
             let (bsdf, out) = at(lane);
@@ -73,6 +73,7 @@ impl<'m> AlikeBsdfs16<'m> {
             }
             base.set(lane, bsdf.base);
             wo.set(lane, out);
+            level_normal.set(lane, bsdf.level_normal);
             for (row, scale) in scales.iter_mut().zip(bsdf.scales) {
                 row.set(lane, scale);
             }
@@ -82,7 +83,8 @@ impl<'m> AlikeBsdfs16<'m> {
         for (masking, lobe) in max_masking.iter_mut().zip(&model.lobes) {
             *masking = lobe.max_masking(wo.z);
         }
-        let seen = Seen::new(model, base.load(), &scales.map(|row| row.load()), wo);
+        let scales = scales.map(|row| row.load());
+        let seen = Seen::new(model, base.load(), &scales, wo, level_normal.load());
         Some(AlikeBsdfs16 { model, seen, max_masking })
     }
 

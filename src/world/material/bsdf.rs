@@ -35,7 +35,7 @@ impl<'m> Bsdf<'m> {
         if self.is_lambert() {
             return (self.base, wi.z * FRAC_1_PI);
         }
-        let seen = self.seen(wo);
+        let seen = self.seen(wo, side);
         let (value, pdf) = seen.eval_pdf::<f32>(&seen.facet(V3::splat(wi)));
         (value.into(), pdf)
     }
@@ -152,7 +152,7 @@ impl<'m> Bsdf<'m> {
     pub fn eval_lobes(&self, lobes: LobeSet, wo: Vec3, wi: Vec3) -> Rgb {
         let side = self.side(wo);
         let (wo, wi) = (Vec3::new(wo.x, wo.y, wo.z * side), Vec3::new(wi.x, wi.y, wi.z * side));
-        let seen = self.seen(wo);
+        let seen = self.seen(wo, side);
         seen.eval_lobes::<f32>(lobes, &seen.facet(V3::splat(wi))).into()
     }
 
@@ -186,6 +186,27 @@ impl<'m> Bsdf<'m> {
     #[inline]
     pub fn two_sided(&self) -> bool {
         self.model.two_sided
+    }
+
+    /// Returns the BSDF on a relief, given the normal without the relief in the shading frame, if shadows need it.
+    #[inline]
+    pub fn on_relief(self, level_normal: impl FnOnce() -> Vec3) -> Self {
+        match self.model.shadows {
+            true => Bsdf { level_normal: level_normal(), ..self },
+            false => self,
+        }
+    }
+
+    /// Returns the share of the light from `wi` that the relief leaves.
+    #[inline]
+    pub(super) fn lit_share(&self, wi: Vec3) -> f32 {
+        self.model.lit_share::<f32>(V3::splat(self.level_normal), V3::splat(wi))
+    }
+
+    /// Returns the BSDF for directions whose z is negated.
+    #[inline]
+    pub fn turned(self) -> Self {
+        Bsdf { level_normal: self.level_normal * Vec3::new(1.0, 1.0, -1.0), ..self }
     }
 
     /// Returns the material's id in the scene.
@@ -256,7 +277,7 @@ impl<'m> Bsdf<'m> {
                 albedo += more;
             }
         }
-        albedo
+        albedo * self.lit_share(wi)
     }
 
     /// Lists the reflections by lobes that a virtual light must not radiate diffusely, though the lobes are rough.
@@ -318,10 +339,12 @@ impl<'m> Bsdf<'m> {
         if wo.z < 0.0 && self.model.two_sided && !self.model.kinds.transmit { -1.0 } else { 1.0 }
     }
 
-    /// Prepares the material for directions that were turned to the side of the normal.
+    /// Prepares the material for directions that were turned to the side of the normal, by the factor `side` on z.
     #[inline(always)]
-    pub(super) fn seen(&self, wo: Vec3) -> Seen<'m, f32> {
-        Seen::new(self.model, V3::splat(self.base), &self.scales.map(V3::splat), V3::splat(wo))
+    pub(super) fn seen(&self, wo: Vec3, side: f32) -> Seen<'m, f32> {
+        let level_normal = self.level_normal * Vec3::new(1.0, 1.0, side);
+        let [base, wo, level_normal] = [self.base, wo, level_normal].map(V3::splat);
+        Seen::new(self.model, base, &self.scales.map(V3::splat), wo, level_normal)
     }
 
     /// Returns the share of the light from the cosine `cos` that the base reflects.

@@ -76,8 +76,8 @@ pub(super) struct Builder<'a> {
     tables: Tables,
     /// Every distinct coat; the first stands for none.
     pub coats: Vec<CoatInterface>,
-    /// Every distinct list of lobes.
-    lobe_lists: Vec<Vec<LobeModel>>,
+    /// Every distinct list of lobes, and whether it is on a relief with shadows.
+    lobe_lists: Vec<(Vec<LobeModel>, bool)>,
 }
 
 impl<'a> Builder<'a> {
@@ -169,14 +169,16 @@ impl<'a> Builder<'a> {
         self.tabulate(&mut lobes, needs_albedo, levels.is_some());
         let opacity = material.opacity.map(|opacity| (opacity, lobes.len()));
         lobes.extend(opacity.map(|_| LobeModel::Gap));
+        let shadows = material.relief.is_some() && material.relief_rules.shadows;
         let model = Model {
             material: id,
             two_sided: material.two_sided,
+            shadows,
             coat: number(&mut self.coats, &base.interface),
             base,
-            lobe_list: number(&mut self.lobe_lists, &lobes),
+            lobe_list: number(&mut self.lobe_lists, &(lobes.clone(), shadows)),
             kinds: LobeKinds::of(&lobes),
-            lambert: bare && lobes.is_empty(),
+            lambert: bare && lobes.is_empty() && !shadows,
             min_alpha: lobes.iter().map(LobeModel::min_alpha).fold(1.0, f32::min),
             lobes,
             mean_roughness: false,

@@ -2,7 +2,8 @@
 
 use super::base::BaseModel;
 use super::lobe::{LobeModel, MAX_LOBES};
-use base::math::Rgb;
+use base::math::{Lane, Rgb, V3};
+use glam::Vec3;
 use scene::MaterialId;
 
 /// Material at one point of a surface: textures are looked up, the rest is shared with [`super::Materials`].
@@ -13,6 +14,8 @@ pub struct Bsdf<'m> {
     pub(super) base: Rgb,
     /// Factors on the lobes; zero in the slots beyond them.
     pub(super) scales: [Rgb; MAX_LOBES],
+    /// Normal without the relief, in the shading frame; used if the relief has shadows.
+    pub(super) level_normal: Vec3,
 }
 
 /// Colours of a material.
@@ -31,6 +34,8 @@ pub(super) struct Model {
     pub material: MaterialId,
     /// True if the back behaves as the front, unless the two sides are those of an interface.
     pub two_sided: bool,
+    /// True if a relief shadows itself (see [`Model::lit_share`]).
+    pub shadows: bool,
     pub base: BaseModel,
     /// Number of the coat on the base; 0 if there is none.
     pub coat: u32,
@@ -79,10 +84,26 @@ impl LobeKinds {
 }
 
 impl Model {
+    /// Returns the share of the light from `wi` that the bumps of a relief do not shadow: Smith's masking by GGX. α² is
+    /// an eighth of the squared slope at the point. `level_normal` is the normal without the relief.
+    ///
+    /// Paper: Estevez, Lecocq, Stein, *A Microfacet-Based Shadowing Function to Solve the Bump Terminator Problem*,
+    /// Ray Tracing Gems, 2019.
+    #[inline(always)]
+    pub fn lit_share<L: Lane>(&self, level_normal: V3<L>, wi: V3<L>) -> L {
+        let one = L::from(1.0);
+        if !self.shadows {
+            return one;
+        }
+        let tan_sq = |cos: L| (cos.sq().max(L::from(f32::MIN_POSITIVE)).recip() - one).positive();
+        let alpha_sq = (tan_sq(level_normal.z) * 0.125).min(one);
+        L::from(2.0) / (one + (one + alpha_sq * tan_sq(level_normal.dot(wi))).sqrt())
+    }
+
     /// Returns the material with the given colours, of which `base` is the BRDF of the base.
     #[inline(always)]
     pub fn with_colours(&self, colours: &Colours<Rgb>) -> Bsdf<'_> {
-        Bsdf { model: self, base: colours.base, scales: colours.scales }
+        Bsdf { model: self, base: colours.base, scales: colours.scales, level_normal: Vec3::Z }
     }
 }
 

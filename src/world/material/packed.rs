@@ -1,4 +1,4 @@
-//! Materials at many points in little memory: the factors of their lobes are in one array.
+//! Materials at many points in little memory: the factors of their lobes are in one array, and normals behind them.
 //!
 //! Most materials have no lobe or one. Slots for all lobes would take three quarters of a material at a point.
 
@@ -23,6 +23,7 @@ impl<'m> PackedBsdf<'m> {
         debug_assert!(beyond.iter().all(|scale| *scale == Rgb::ZERO));
         let first = factors.len() as u32;
         factors.extend_from_slice(used);
+        factors.extend(bsdf.model.shadows.then_some(bsdf.level_normal));
         PackedBsdf { model: bsdf.model, base: bsdf.base, first }
     }
 
@@ -31,8 +32,9 @@ impl<'m> PackedBsdf<'m> {
     pub fn unpack(&self, factors: &[Rgb]) -> Bsdf<'m> {
         let mut scales = [Rgb::ZERO; MAX_LOBES];
         let (first, count) = (self.first as usize, self.model.lobes.len());
+        let level_normal = if self.model.shadows { factors[first + count] } else { Rgb::Z };
         scales[..count].copy_from_slice(&factors[first..first + count]);
-        Bsdf { model: self.model, base: self.base, scales }
+        Bsdf { model: self.model, base: self.base, scales, level_normal }
     }
 
     /// Returns the number of its list of lobes. Materials with the same number differ in factors only.

@@ -20,6 +20,8 @@ pub struct Bsdfs16<'m> {
     base: Vec3x16,
     /// Factors on the lobes.
     scales: [Vec3x16; MAX_LOBES],
+    /// Normals without reliefs, in the shading frames.
+    level_normal: Vec3x16,
     /// -1 if a two-sided surface is seen from behind, else 1.
     side: F32x16,
     /// Lanes whose materials are more than Lambertian.
@@ -55,6 +57,7 @@ impl<'m> Bsdfs16<'m> {
             wo,
             base: Vec3x16::ZERO,
             scales: [Vec3x16::ZERO; MAX_LOBES],
+            level_normal: Vec3x16::ZERO,
             side: [1.0; LANES],
             layered: 0,
             smooth: 0,
@@ -73,6 +76,7 @@ impl<'m> Bsdfs16<'m> {
         for slot in 0..bsdf.model.lobes.len() {
             self.scales[slot].set(lane, bsdf.scales[slot]);
         }
+        self.level_normal.set(lane, bsdf.level_normal);
         self.side[lane] = bsdf.side(self.wo.get(lane));
         self.layered |= u16::from(!bsdf.is_lambert()) << lane;
         self.smooth |= u16::from(bsdf.has_smooth()) << lane;
@@ -118,7 +122,8 @@ impl<'m> Bsdfs16<'m> {
         for slot in 0..self.models[lane].lobes.len() {
             scales[slot] = self.scales[slot].get(lane);
         }
-        Bsdf { model: self.models[lane], base: self.base.get(lane), scales }
+        let (base, level_normal) = (self.base.get(lane), self.level_normal.get(lane));
+        Bsdf { model: self.models[lane], base, scales, level_normal }
     }
 
     /// Returns the direction from which a lane is seen.
@@ -239,7 +244,8 @@ impl<'m> Bsdfs16<'m> {
         for slot in 0..model.lobes.len() {
             scales[slot] = self.scales[slot].load();
         }
-        Seen::new(model, self.base.load(), &scales, self.turned(&self.wo))
+        let [wo, level_normal] = [&self.wo, &self.level_normal].map(|v| self.turned(v));
+        Seen::new(model, self.base.load(), &scales, wo, level_normal)
     }
 }
 

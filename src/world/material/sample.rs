@@ -28,7 +28,7 @@ impl Bsdf<'_> {
         if !(wo.z > 0.0) && !self.model.kinds.pass_light {
             return None;
         }
-        let seen = self.seen(wo);
+        let seen = self.seen(wo, side);
         let sampled = match self.is_lambert() {
             true => seen.sample_lambert(u.to_array(), true),
             false => seen.sample(u_lobe, u.to_array(), true),
@@ -60,6 +60,7 @@ impl Bsdf<'_> {
             let (wi, weight) = (Vec3::from(delta.wi), Rgb::from(delta.weight));
             let lobe = if (wi.z > 0.0) == (wo.z > 0.0) { &mut all.reflection } else { &mut all.refraction };
             let (wi, straight) = (Vec3::new(wi.x, wi.y, wi.z * side), delta.straight);
+            let weight = if straight { weight } else { weight * self.lit_share(wi) };
             match lobe {
                 Some(other) => other.weight += weight,
                 None => {

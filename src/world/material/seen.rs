@@ -19,6 +19,8 @@ const MIN_WEIGHT: f32 = 1e-30;
 pub(super) struct Seen<'m, W: Lane> {
     model: &'m Model,
     pub wo: V3<W>,
+    /// Normals without the relief, turned as the directions are.
+    pub level_normal: V3<W>,
     /// BRDFs of the bases, times the coat's transmittance for `wo`; 0 if `wo` is below the surface.
     pub base: V3<W>,
     /// Factors on the lobes.
@@ -52,7 +54,13 @@ pub(super) struct Sampled<D: Lane> {
 impl<'m, W: Lane> Seen<'m, W> {
     /// Prepares materials with the BRDFs `base` and the factors `scales` for `wo`.
     #[inline(always)]
-    pub fn new(model: &'m Model, base: V3<W>, scales: &[V3<W>; MAX_LOBES], wo: V3<W>) -> Seen<'m, W> {
+    pub fn new(
+        model: &'m Model,
+        base: V3<W>,
+        scales: &[V3<W>; MAX_LOBES],
+        wo: V3<W>,
+        level_normal: V3<W>,
+    ) -> Seen<'m, W> {
         let zero = W::from(0.0);
         let transmittance = model.base.interface.transmittance(wo.z);
         // Light that passes gaps in a surface may reach its back.
@@ -60,6 +68,7 @@ impl<'m, W: Lane> Seen<'m, W> {
         let mut seen = Seen {
             model,
             wo,
+            level_normal,
             base,
             scales: [V3::zero(); MAX_LOBES],
             lobes: [SeenLobe::none(); MAX_LOBES],
@@ -114,7 +123,7 @@ impl<'m, W: Lane> Seen<'m, W> {
                 pdf += lobe_pdf * D::from(self.probabilities[slot]);
             }
         }
-        (value, pdf)
+        (self.shadowed(value, facet.wi), pdf)
     }
 
     /// Returns the part of the values that is due to some of the lobes.
@@ -127,7 +136,16 @@ impl<'m, W: Lane> Seen<'m, W> {
                 value += self.scales[slot].widen() * lobe_value;
             }
         }
-        value
+        self.shadowed(value, facet.wi)
+    }
+
+    /// Returns values for light from `wi` with the shadows of the relief, if it has any.
+    #[inline(always)]
+    fn shadowed<D: Lane + From<W>>(&self, value: V3<D>, wi: V3<D>) -> V3<D> {
+        match self.model.shadows {
+            true => value.times(self.model.lit_share(self.level_normal.widen(), wi)),
+            false => value,
+        }
     }
 
     /// Samples directions in the lanes of `wanted`. `u_lobe` chooses base or lobe, `u` the direction.
@@ -155,6 +173,7 @@ impl<'m, W: Lane> Seen<'m, W> {
             if lobe.is_delta() {
                 let into = lobe.delta(self.scales[slot].widen(), wo);
                 let weight = into.weight.times(probability.max(D::from(MIN_WEIGHT)).recip());
+                let weight = if into.straight { weight } else { self.shadowed(weight, into.wi) };
                 found = found | chosen & into.found & probability.is_positive();
                 delta = delta | chosen;
                 straight = if into.straight { straight | chosen } else { straight };
