@@ -170,7 +170,9 @@ impl WalkJob {
         };
         let choice = choice::of_series(session, &views, &self.goal, sharing, control);
         let method = choice.map_or(self.goal.method, |choice| choice.method);
-        self.goal = Goal { method, may_choose: false, ..self.goal.clone() };
+        // The choice was for denoised images, also if it is a method whose images are not denoised by default.
+        let denoise = Some(self.goal.denoises());
+        self.goal = Goal { method, may_choose: false, denoise, ..self.goal.clone() };
         choice.map(|choice| choice.text())
     }
 

@@ -25,6 +25,11 @@ fn an_open_method_is_chosen_once_for_the_whole_list_as_for_a_still() {
     let method = |choice: &str| choice.split(' ').nth(1).unwrap().to_owned();
     assert_eq!(method(chosen), method(choice(&still).unwrap()), "{}", all.stderr);
     assert!(exr(&sandbox, NAMES[2]).metadata().text("method") == Some(&method(chosen)));
+    let denoised = exr(&sandbox, NAMES[2]).metadata().text("denoised").map(str::to_owned);
+    assert!(
+        denoised.as_ref().is_some_and(|library| library.starts_with("Open Image Denoise")),
+        "{denoised:?}"
+    );
     let whole = NAMES.map(|name| colour(&sandbox, name));
     let again = open(&["--resume"]);
     assert!(again.stderr.contains("0 views rendered, 5 existed") && choice(&again) == Some(chosen));
