@@ -14,7 +14,8 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 /// State shared between the rendering thread and watching threads.
 #[derive(Debug, Default)]
 pub struct Control {
-    cancelled: AtomicBool,
+    /// Controls of images that are rendered side by side share it.
+    cancelled: Arc<AtomicBool>,
     /// Stage and total. `done` is reset under this lock, so a snapshot never mixes two stages.
     stage: Mutex<ProgressState>,
     done: AtomicU64,
@@ -67,6 +68,11 @@ impl Control {
     /// Creates a control: not cancelled, no stage state.
     pub fn new() -> Control {
         Control::default()
+    }
+
+    /// Returns the control of one of several images that are rendered side by side. All of them are cancelled together.
+    pub fn of_image(&self) -> Control {
+        Control { cancelled: Arc::clone(&self.cancelled), ..Control::default() }
     }
 
     /// Asks the method to stop soon. May be called from a signal-handling thread, any number of times.
@@ -206,7 +212,9 @@ mod tests {
         });
         assert_eq!(control.progress().unwrap().done, 4000);
         assert!(!control.is_cancelled());
+        let of_image = control.of_image();
+        assert_eq!(of_image.progress(), None);
         std::thread::scope(|scope| drop(scope.spawn(|| control.cancel())));
-        assert!(control.is_cancelled());
+        assert!(control.is_cancelled() && of_image.is_cancelled());
     }
 }

@@ -59,12 +59,29 @@ fn about(feature: Feature) -> &'static str {
         Feature::Material => "Number of the material, counted from 1",
         Feature::Object => "Number of the mesh, counted from 1",
         Feature::Alpha => "Share of the pixel that surfaces cover",
+        Feature::CryptoObject => "Cryptomatte: the share of the pixel that each mesh covers, by name",
+        Feature::CryptoMaterial => "Cryptomatte of materials",
     }
 }
 
 /// Parses a count, or a number that counts from 1.
 pub fn counted(text: &str) -> Result<NonZeroUsize, String> {
     text.parse().map_err(|_| "expected a whole number, 1 or more".to_owned())
+}
+
+/// Parses a factor or a length.
+pub fn scale(text: &str) -> Result<f32, String> {
+    let scale = text.parse().ok().filter(|scale: &f32| scale.is_normal() && *scale > 0.0);
+    scale.ok_or_else(|| "expected a number above 0".to_owned())
+}
+
+/// Parses a range of two numbers.
+pub fn range(text: &str) -> Result<[f64; 2], String> {
+    let numbers: Option<Vec<f64>> = text.split(',').map(|number| number.trim().parse().ok()).collect();
+    match numbers.as_deref() {
+        Some(&[low, high]) if low.is_finite() && high.is_finite() && low <= high => Ok([low, high]),
+        _ => Err("expected the lower and the higher number, like 1,1.5".to_owned()),
+    }
 }
 
 /// Parses a quantisation scale.

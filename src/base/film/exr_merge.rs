@@ -1,7 +1,7 @@
 //! Weighted means of several images of one view, channel by channel.
 
 use super::exr_read::text;
-use super::{ExrFile, ImageError};
+use super::{CRYPTO, ExrFile, ImageError};
 use ::exr::prelude::FlatSamples;
 
 /// Weight of an image.
@@ -27,7 +27,7 @@ impl ExrFile {
     /// Replaces every float channel by the weighted mean of the images. Layers of `variances` become the variance of
     /// that mean.
     ///
-    /// Pixels without weight are 0. Ids stay unchanged.
+    /// Pixels without weight are 0. Ids and layers of Cryptomatte stay unchanged.
     ///
     /// # Errors
     /// If channels or sizes differ.
@@ -50,7 +50,7 @@ impl ExrFile {
                     variances.iter().any(|layer| name.rsplit_once('.').is_some_and(|(l, _)| l == *layer));
                 let of_others =
                     others.iter().map(|other| &other.parts.layer_data[p].channel_data.list[c].sample_data);
-                if matches!(channel.sample_data, FlatSamples::U32(_)) {
+                if matches!(channel.sample_data, FlatSamples::U32(_)) || name.starts_with(CRYPTO) {
                     continue;
                 }
                 let mut means = vec![0.0f64; channel.sample_data.len()];

@@ -1,4 +1,5 @@
-//! Writer of OpenEXR files: one part, 32-bit float, layers as dotted channels, metadata as attributes.
+//! Writer of OpenEXR files: one part, 32-bit float, layers as dotted channels, metadata as attributes. Colours, albedos
+//! and normals may be half floats.
 //!
 //! The colour is `R`, `G`, `B`; for layers see [`super::layer`]. A cropped image has its window as data window, and the
 //! whole film as display window. Compression is RLE, which is lossless. On rendered floats its files are within 3 % of
@@ -16,6 +17,14 @@ use std::path::Path;
 /// Prefix of the program's own attributes.
 pub(super) const PREFIX: &str = "lightsplat.";
 
+/// Prefix of attributes of Cryptomatte, which have no other.
+const CRYPTOMATTE: &str = "cryptomatte/";
+
+/// Layers that are half floats if the film asks for it; the image has the name "".
+const HALVES: [&str; 5] = ["", "noisy", "albedo", "normal", "geometricNormal"];
+
+type Channels = SmallVec<[AnyChannel<FlatSamples>; 4]>;
+
 /// Writes `film` to `path`, completely or not at all.
 ///
 /// Images must not contain NaN or infinity. The caller runs [`Film::remove_nonfinite`] first, to report their number.
@@ -26,14 +35,28 @@ pub(super) const PREFIX: &str = "lightsplat.";
 pub fn write_exr(path: &Path, film: &Film) -> std::result::Result<(), ImageError> {
     film.check_sizes()?;
     let window = film.window;
-    let mut channels = SmallVec::new();
-    push(&mut channels, "", ["R", "G", "B"], &film.color);
+    let mut channels = Channels::new();
+    let triples = |name: &str, components: [&str; 3], image: &super::Image, channels: &mut Channels| {
+        let is_half = film.half && HALVES.contains(&name);
+        for (i, component) in components.into_iter().enumerate() {
+            let values = image.pixels.iter().map(|pixel| pixel[i]);
+            let name = if name.is_empty() { component.to_owned() } else { format!("{name}.{component}") };
+            channels.push(if is_half { halves(&name, values) } else { floats(&name, values) });
+        }
+    };
+    triples("", ["R", "G", "B"], &film.color, &mut channels);
     for layer in &film.layers {
+        let name = &layer.name;
         match &layer.pixels {
-            Pixels::Color(image) => push(&mut channels, &layer.name, ["R", "G", "B"], image),
-            Pixels::Vector(image) => push(&mut channels, &layer.name, ["X", "Y", "Z"], image),
-            Pixels::Scalar(image) => channels.push(floats(&layer.name, image.pixels.iter().copied())),
-            Pixels::Id(image) => channels.push(channel(&layer.name, FlatSamples::U32(image.pixels.clone()))),
+            Pixels::Color(image) => triples(name, ["R", "G", "B"], image, &mut channels),
+            Pixels::Vector(image) => triples(name, ["X", "Y", "Z"], image, &mut channels),
+            Pixels::Scalar(image) => channels.push(floats(name, image.pixels.iter().copied())),
+            Pixels::Id(image) => channels.push(channel(name, FlatSamples::U32(image.pixels.clone()))),
+            Pixels::Ranks(image) => {
+                channels.extend(["R", "G", "B", "A"].into_iter().enumerate().map(|(i, component)| {
+                    floats(&format!("{name}.{component}"), image.pixels.iter().map(|p| p[i]))
+                }))
+            }
         }
     }
     let encoding = Encoding {
@@ -64,25 +87,19 @@ pub(super) fn write(
     .map_err(|error| ImageError::Write { path: path.to_owned(), error })
 }
 
-/// Appends the three channels of a layer.
-fn push(
-    channels: &mut SmallVec<[AnyChannel<FlatSamples>; 4]>,
-    layer: &str,
-    names: [&str; 3],
-    image: &super::Image,
-) {
-    for (i, name) in names.into_iter().enumerate() {
-        let name = if layer.is_empty() { name.to_owned() } else { format!("{layer}.{name}") };
-        channels.push(floats(&name, image.pixels.iter().map(|pixel| pixel[i])));
-    }
+fn floats(name: &str, values: impl Iterator<Item = f32>) -> AnyChannel<FlatSamples> {
+    channel(name, FlatSamples::F32(values.map(|x| finite(name, x)).collect()))
 }
 
-fn floats(name: &str, values: impl Iterator<Item = f32>) -> AnyChannel<FlatSamples> {
-    let finite = |x: f32| {
-        debug_assert!(x.is_finite(), "{name} is not finite");
-        if x.is_finite() { x } else { 0.0 }
-    };
-    channel(name, FlatSamples::F32(values.map(finite).collect()))
+fn halves(name: &str, values: impl Iterator<Item = f32>) -> AnyChannel<FlatSamples> {
+    // Larger numbers would become infinite.
+    let half = |x: f32| f16::from_f32(finite(name, x).clamp(f16::MIN.to_f32(), f16::MAX.to_f32()));
+    channel(name, FlatSamples::F16(values.map(half).collect()))
+}
+
+fn finite(name: &str, x: f32) -> f32 {
+    debug_assert!(x.is_finite(), "{name} is not finite");
+    if x.is_finite() { x } else { 0.0 }
 }
 
 fn channel(name: &str, samples: FlatSamples) -> AnyChannel<FlatSamples> {
@@ -119,7 +136,8 @@ pub(super) fn set(attributes: &mut LayerAttributes, key: &str, value: &Fact) {
 
 /// Returns the name of a fact's attribute.
 pub(super) fn name_of(key: &str) -> Text {
-    Text::from_slice_unchecked(format!("{PREFIX}{key}").as_bytes())
+    let prefix = if key.starts_with(CRYPTOMATTE) { "" } else { PREFIX };
+    Text::from_slice_unchecked(format!("{prefix}{key}").as_bytes())
 }
 
 fn into_io(error: Error) -> io::Error {

@@ -15,6 +15,7 @@ pub fn show(layer: &Layer, picture: &Image, factor: f32) -> Option<Vec<u8>> {
             numbers(image.pixels.iter().map(|p| p.dot(weights) - offset))
         }
         (Pixels::Scalar(image), _) => numbers(image.pixels.iter().copied()),
+        (Pixels::Ranks(image), _) => numbers(image.pixels.iter().map(|ranks| ranks[1])),
         (Pixels::Id(image), _) => numbers(image.pixels.iter().map(|&id| id as f32)),
     })
 }

@@ -6,6 +6,7 @@
 //! | vector | `name.X`, `name.Y`, `name.Z` |
 //! | scalar | `name` |
 //! | id | `name`, unsigned integers |
+//! | ranks | `name.R`, `name.G`, `name.B`, `name.A`: twice an id and its coverage, as in Cryptomatte |
 
 use super::Image;
 use crate::math::Rgb;
@@ -18,6 +19,9 @@ pub const BACKGROUND: &str = "background";
 pub const NO_BACKGROUND: &str = "none";
 /// Layer of the number of samples per pixel, if it varies.
 pub const SAMPLES: &str = "samples";
+
+/// Start of the names of layers of Cryptomatte, whose numbers are ids and must not be averaged or rounded.
+pub const CRYPTO: &str = "Crypto";
 
 /// A further image of an image file.
 #[derive(Clone, Debug, PartialEq)]
@@ -41,6 +45,8 @@ pub enum Pixels {
     Scalar(Image<f32>),
     /// Ids of objects; never averaged. 0 stands for no object.
     Id(Image<u32>),
+    /// Two ranks of ids as 32-bit floats, each with the share of the pixel that it covers.
+    Ranks(Image<[f32; 4]>),
 }
 
 /// Display of a layer.
@@ -91,7 +97,7 @@ impl Layer {
     pub fn triples(&self) -> Option<&Image> {
         match &self.pixels {
             Pixels::Color(image) | Pixels::Vector(image) => Some(image),
-            Pixels::Scalar(_) | Pixels::Id(_) => None,
+            Pixels::Scalar(_) | Pixels::Id(_) | Pixels::Ranks(_) => None,
         }
     }
 
@@ -101,6 +107,7 @@ impl Layer {
             Pixels::Color(image) | Pixels::Vector(image) => image.size(),
             Pixels::Scalar(image) => image.size(),
             Pixels::Id(image) => image.size(),
+            Pixels::Ranks(image) => image.size(),
         }
     }
 
@@ -109,7 +116,7 @@ impl Layer {
         match &mut self.pixels {
             Pixels::Color(image) | Pixels::Vector(image) => image.remove_nonfinite(),
             Pixels::Scalar(image) => super::remove_nonfinite(image.pixels.iter_mut()),
-            Pixels::Id(_) => 0,
+            Pixels::Id(_) | Pixels::Ranks(_) => 0,
         }
     }
 }

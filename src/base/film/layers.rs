@@ -16,6 +16,8 @@ pub struct Film {
     pub camera: Option<CameraMatrices>,
     /// Metadata: settings, statistics and scene of the image.
     pub metadata: Metadata,
+    /// True if the file is to hold colours, albedos and normals as half floats.
+    pub half: bool,
 }
 
 /// Standard attributes `worldToCamera` and `worldToNDC` of OpenEXR. Matrices are stored by rows and multiply row
@@ -33,7 +35,7 @@ impl Film {
     /// Creates a film of one complete image.
     pub fn new(color: Image) -> Film {
         let window = Window::whole([color.width, color.height]);
-        Film { window, color, layers: Vec::new(), camera: None, metadata: Metadata::default() }
+        Film { window, color, layers: Vec::new(), camera: None, metadata: Metadata::default(), half: false }
     }
 
     /// Replaces every non-finite channel of all images by 0; returns their number.

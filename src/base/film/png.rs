@@ -1,4 +1,4 @@
-//! 8-bit sRGB PNG files for display.
+//! PNG files: 8-bit sRGB for display, and numbers of 16 bits.
 
 use super::look::Look;
 use super::tone::Shown;
@@ -25,6 +25,16 @@ pub fn write_png<'a>(path: &Path, image: impl Into<Shown<'a>>, look: Look) -> Re
 /// If writing fails.
 pub fn write_srgb8(path: &Path, size: [u32; 2], bytes: &[u8]) -> Result<(), ImageError> {
     write(path, size, bytes, ExtendedColorType::Rgb8)
+}
+
+/// Writes numbers, row-major, to `path`, completely or not at all.
+///
+/// # Errors
+/// If writing fails.
+pub fn write_grey16(path: &Path, size: [u32; 2], numbers: &[u16]) -> Result<(), ImageError> {
+    // The encoder takes the bytes of this machine's numbers.
+    let bytes: Vec<u8> = numbers.iter().flat_map(|number| number.to_ne_bytes()).collect();
+    write(path, size, &bytes, ExtendedColorType::L16)
 }
 
 fn write(path: &Path, size: [u32; 2], bytes: &[u8], kind: ExtendedColorType) -> Result<(), ImageError> {
@@ -55,6 +65,8 @@ mod tests {
         assert_eq!(read.dimensions(), (2, 1));
         // 0.5 in sRGB is 0.7354, 188 of 255.
         assert_eq!(read.into_raw(), [188, 0, 0, 255, 255, 0]);
+        write_grey16(&path, [2, 1], &[258, 65535]).unwrap();
+        assert_eq!(::image::open(&path).unwrap().into_luma16().into_raw(), [258, 65535]);
         // Half of the first pixel is covered, and nothing of the second.
         let alpha = Image { width: 2, height: 1, pixels: vec![0.5, 0.0] };
         image.pixels = vec![Rgb::new(0.125, 0.0, 0.0625), Rgb::ONE];

@@ -1,6 +1,6 @@
 //! Store of virtual lights, photons and learned light, which methods share from frame to frame.
 
-use super::photon_store::{Memo, PhotonStore, forget, recall};
+use super::photon_store::{Memo, PhotonStore, forget, recall, recall_own};
 use super::tally::Tally;
 use crate::method::Sampling;
 use base::progress::Control;
@@ -50,7 +50,7 @@ impl LightStore {
     /// Returns what is learned of the light in a view for images with `spp` samples per pixel.
     pub fn learned(&self, world: &World, view: &View, spp: u32, control: &Control) -> Arc<LearnedLight> {
         let wanted = Learning::new(view, spp);
-        recall(&self.learned, wanted, control, |wanted| wanted.learn(world, view, control))
+        recall_own(&self.learned, wanted, control, |wanted| wanted.learn(world, view, control))
     }
 
     /// Returns the light by which paths of the eye pass end behind specular lobes; `None` if they go on.

@@ -90,7 +90,7 @@ impl PhotonStore {
         let mut found = pilot;
         if count > PhotonCount::PILOT {
             let make = |count: &PhotonCount| levels.first.photons(world, *count, control);
-            found = levels.light(&recall(&levels.more, count, control, make), view, settings);
+            found = levels.light(&recall_own(&levels.more, count, control, make), view, settings);
             found.paths += levels.pilot.paths;
             found.rays += levels.pilot.rays;
         }
@@ -150,6 +150,24 @@ pub fn recall<K: PartialEq, V>(
     let value = Arc::new(make(&key));
     *stored = (!control.is_cancelled()).then(|| (key, Arc::clone(&value)));
     value
+}
+
+/// Returns the value of `memo` as [`recall`] does, for values that differ from image to image. Images that are rendered
+/// side by side make theirs at one time.
+pub fn recall_own<K: PartialEq, V>(
+    memo: &Memo<K, V>,
+    key: K,
+    control: &Control,
+    make: impl FnOnce(&K) -> V,
+) -> Arc<V> {
+    let stored = || memo.lock().unwrap_or_else(PoisonError::into_inner);
+    let is_it = |(made_for, value): &(K, Arc<V>)| (*made_for == key).then(|| Arc::clone(value));
+    let known = stored().as_ref().and_then(is_it);
+    known.unwrap_or_else(|| {
+        let value = Arc::new(make(&key));
+        *stored() = (!control.is_cancelled()).then(|| (key, Arc::clone(&value)));
+        value
+    })
 }
 
 /// Drops the value of `memo`.

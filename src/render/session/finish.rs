@@ -9,7 +9,7 @@ use base::math::Rgb;
 use base::progress::Control;
 use base::stats::{Stage, Stats, Stopwatch, give_back};
 use scene::{Environment, Projection};
-use transport::eye::{Averaging, Feature, FeatureSettings, Features, SeenPixels};
+use transport::eye::{Averaging, Feature, FeatureSettings, Features, Masks, SeenPixels};
 use world::World;
 use world::view::View;
 
@@ -138,14 +138,18 @@ impl<'a> Finish<'a> {
         for feature in unwanted {
             means.retain(|layer| layer.name != feature.name());
         }
+        let masks = Feature::ALL.into_iter().filter(|feature| self.features.contains(*feature));
+        let of_masks = |masks: Masks| masks.layers(self.world, self.view, method.seed(), self.control);
+        let masks: Vec<Layer> = masks.filter_map(Feature::masks).flat_map(of_masks).collect();
         if self.averaging == Averaging::Mean || self.features.is_empty() {
+            means.extend(masks);
             return means;
         }
         let settings = FeatureSettings { estimand: method.estimand(), spp: 1, seed: method.seed() };
         let seen = SeenPixels::first_hits(self.world, self.view, &settings, self.control);
         let mut layers = seen.layers(self.world, self.features);
         layers.retain(|layer| layer.name != ALPHA);
-        layers.extend(means.into_iter().filter(|layer| layer.name == ALPHA));
+        layers.extend(means.into_iter().filter(|layer| layer.name == ALPHA).chain(masks));
         layers
     }
 

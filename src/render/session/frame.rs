@@ -103,7 +103,7 @@ pub(super) fn film(output: Output, view: &View, scene: &Scene) -> (Film, u64) {
     let resumable = output.resumable.into_iter().filter(|_| !output.complete);
     let layers = variance.into_iter().chain(output.extra).chain(resumable).collect();
     let camera = Some(view.matrices(scene.centre, scene.unit()));
-    let mut film = Film { window: view.window, color: output.color, layers, camera, metadata };
+    let mut film = Film { window: view.window, color: output.color, layers, camera, metadata, half: false };
     let nonfinite = film.remove_nonfinite();
     (film, nonfinite)
 }

@@ -16,7 +16,7 @@ use crate::verify::verify;
 use base::film::Image;
 use base::progress::Control;
 use base::stats::{Stage, Stats, Stopwatch, available_bytes};
-use transport::eye::Averaging;
+use transport::eye::{Averaging, Feature};
 use world::view::View;
 
 impl Session {
@@ -100,7 +100,11 @@ impl Session {
         if goal.averaging == Averaging::First {
             film.metadata.set("aov_mode", "first");
         }
-
+        let masks = Feature::ALL.into_iter().filter(|feature| goal.features.contains(*feature));
+        for (key, value) in masks.filter_map(Feature::masks).flat_map(|masks| masks.attributes(&world.scene))
+        {
+            film.metadata.set(&key, value);
+        }
         let measure = || measure(&context, goal, &method, &film.color, &mut stats);
         let measured = if complete { measured.or_else(measure) } else { None };
         let found = measured.as_ref().and_then(|m| Some((m.result.as_ref()?, &m.settings)));

@@ -10,6 +10,8 @@
 //! | material | `materialId` | 1 + index of the nearest sample's material; 0 without a surface |
 //! | object | `objectId` | 1 + index of the nearest sample's mesh; 0 without a surface |
 //! | alpha | `A` | share of the pixel that surfaces cover, without gaps in them |
+//! | crypto-object | `CryptoObject00`, ... | names of meshes with their shares of the pixel (see [`super::Masks`]) |
+//! | crypto-material | `CryptoMaterial00`, ... | names of materials, likewise |
 //!
 //! A sample's features are those of the surface that contributes most of its light. At mirrors and smooth glass these
 //! are the surfaces seen in or behind them, at the summed distance. If the environment contributes most, they are
@@ -26,23 +28,17 @@
 //! [`Averaging::First`] averages nothing. It describes the surface that the ray through the pixel's middle hits first,
 //! also if that is a mirror or glass. Alpha is a share nevertheless.
 
+use super::cryptomatte::Masks;
 use super::seen::{FeatureSampler, FeatureSettings, PixelFeatures};
+use super::tiles::by_tiles;
 use base::film::{Image, Layer};
 use base::math::Rgb;
-use base::parallel::ShortRuns;
 use base::progress::Control;
 use glam::Vec3;
-use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::str::FromStr;
 use world::World;
 use world::view::View;
-
-/// Pixels along the edge of the square that one task examines.
-const TILE: u32 = 16;
-
-/// Maximum number of squares that are examined before their pixels are joined.
-const TILES: usize = 1024;
 
 /// Depth without a surface: Blender's value.
 const NO_DEPTH: f32 = 1e10;
@@ -66,11 +62,15 @@ pub enum Feature {
     Object,
     /// Share of the pixel that surfaces cover.
     Alpha,
+    /// Share of the pixel that each mesh covers.
+    CryptoObject,
+    /// Share of the pixel that each material covers.
+    CryptoMaterial,
 }
 
 impl Feature {
     /// All features.
-    pub const ALL: [Feature; 8] = [
+    pub const ALL: [Feature; 10] = [
         Feature::Albedo,
         Feature::Normal,
         Feature::GeometricNormal,
@@ -79,6 +79,8 @@ impl Feature {
         Feature::Material,
         Feature::Object,
         Feature::Alpha,
+        Feature::CryptoObject,
+        Feature::CryptoMaterial,
     ];
 
     /// Returns the name that users type.
@@ -92,6 +94,17 @@ impl Feature {
             Feature::Material => "material",
             Feature::Object => "object",
             Feature::Alpha => "alpha",
+            Feature::CryptoObject => "crypto-object",
+            Feature::CryptoMaterial => "crypto-material",
+        }
+    }
+
+    /// Returns the masks that the feature is, if it is any.
+    pub fn masks(self) -> Option<Masks> {
+        match self {
+            Feature::CryptoObject => Some(Masks::Objects),
+            Feature::CryptoMaterial => Some(Masks::Materials),
+            _ => None,
         }
     }
 }
@@ -108,7 +121,7 @@ pub enum Averaging {
 
 /// Set of features.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Features(u8);
+pub struct Features(u16);
 
 impl Features {
     /// Returns true if the set is empty.
@@ -168,9 +181,8 @@ pub struct EvenSurface {
 impl SeenPixels {
     /// Samples the pixels of the view's window; pixels are empty once cancelled.
     pub fn new(world: &World, view: &View, settings: &FeatureSettings, control: &Control) -> SeenPixels {
-        SeenPixels::by_tiles(view, control, |first, last| {
-            FeatureSampler { world, view, settings }.pixels(first, last)
-        })
+        let look = |first, last| FeatureSampler { world, view, settings }.pixels(first, last);
+        SeenPixels { pixels: by_tiles(view, control, look) }
     }
 
     /// Finds the first hits of the rays through the middles of the pixels; pixels are empty once cancelled.
@@ -181,39 +193,11 @@ impl SeenPixels {
         control: &Control,
     ) -> SeenPixels {
         let sampler = FeatureSampler { world, view, settings };
-        SeenPixels::by_tiles(view, control, |first, last| {
+        let look = |first: [u32; 2], last: [u32; 2]| {
             let pixels = (first[1]..=last[1]).flat_map(|y| (first[0]..=last[0]).map(move |x| [x, y]));
             pixels.map(|pixel| sampler.first_hit(pixel)).collect()
-        })
-    }
-
-    /// Looks through the pixels of a view's window; `look` returns those from a first to a last film pixel, by rows.
-    fn by_tiles(
-        view: &View,
-        control: &Control,
-        look: impl Fn([u32; 2], [u32; 2]) -> Vec<PixelFeatures> + Sync,
-    ) -> SeenPixels {
-        let window = &view.window;
-        let mut pixels: Vec<PixelFeatures> = vec![PixelFeatures::default(); window.pixel_count() as usize];
-        let numbers: Vec<usize> = (0..window.tile_count(TILE)).collect();
-        // Blocks of tiles bound the memory that pixels take twice.
-        for numbers in numbers.chunks(TILES) {
-            let look_at = |index: &usize| {
-                if control.is_cancelled() {
-                    return Vec::new();
-                }
-                let mut tile = window.tile(*index, TILE).map(|at| window.film_pixel(at));
-                let Some(first) = tile.next() else { return Vec::new() };
-                look(first, tile.last().unwrap_or(first))
-            };
-            let found: Vec<Vec<PixelFeatures>> = numbers.par_iter().one_by_one().map(look_at).collect();
-            for (tile, found) in numbers.iter().zip(found) {
-                for (pixel, [x, y]) in found.into_iter().zip(window.tile(*tile, TILE)) {
-                    pixels[(y * window.width + x) as usize] = pixel;
-                }
-            }
-        }
-        SeenPixels { pixels: Image { width: window.width, height: window.height, pixels } }
+        };
+        SeenPixels { pixels: by_tiles(view, control, look) }
     }
 
     /// Returns the surface that fills a pixel and its surroundings evenly and shows no clear reflections; `None` if
@@ -238,7 +222,7 @@ impl SeenPixels {
         pixel.albedo / pixel.samples.max(1) as f32
     }
 
-    /// Returns the layers of the requested features.
+    /// Returns the layers of the requested features, without masks.
     pub fn layers(&self, world: &World, wanted: Features) -> Vec<Layer> {
         let pixels = &self.pixels;
         let (centre, unit) = (world.scene.centre, world.scene.unit());
@@ -247,20 +231,24 @@ impl SeenPixels {
             n => (centre + p.position / f64::from(n) * unit).as_vec3(),
         };
         let depth = |p: &PixelFeatures| p.nearest.map_or(NO_DEPTH, |n| (f64::from(n.depth) * unit) as f32);
-        let layer = |feature: Feature| match feature {
-            Feature::Albedo => Layer::color("albedo", pixels.map(|p| p.albedo / p.samples as f32)),
-            Feature::Normal => Layer::vector("normal", pixels.map(|p| p.normal / p.samples as f32)),
-            Feature::GeometricNormal => {
-                Layer::vector("geometricNormal", pixels.map(|p| p.geometric_normal / p.samples as f32))
-            }
-            Feature::Position => Layer::vector("position", pixels.map(position)),
-            Feature::Depth => Layer::scalar("depth.Z", pixels.map(depth)),
-            Feature::Material => {
-                Layer::id("materialId", pixels.map(|p| p.nearest.map_or(0, |n| n.material + 1)))
-            }
-            Feature::Object => Layer::id("objectId", pixels.map(|p| p.nearest.map_or(0, |n| n.mesh + 1))),
-            Feature::Alpha => Layer::scalar("A", pixels.map(|p| p.covered / p.samples as f32)),
+        let layer = |feature: Feature| {
+            Some(match feature {
+                Feature::Albedo => Layer::color("albedo", pixels.map(|p| p.albedo / p.samples as f32)),
+                Feature::Normal => Layer::vector("normal", pixels.map(|p| p.normal / p.samples as f32)),
+                Feature::GeometricNormal => {
+                    Layer::vector("geometricNormal", pixels.map(|p| p.geometric_normal / p.samples as f32))
+                }
+                Feature::Position => Layer::vector("position", pixels.map(position)),
+                Feature::Depth => Layer::scalar("depth.Z", pixels.map(depth)),
+                Feature::Material => {
+                    Layer::id("materialId", pixels.map(|p| p.nearest.map_or(0, |n| n.material + 1)))
+                }
+                Feature::Object => Layer::id("objectId", pixels.map(|p| p.nearest.map_or(0, |n| n.mesh + 1))),
+                Feature::Alpha => Layer::scalar("A", pixels.map(|p| p.covered / p.samples as f32)),
+                // Masks have samples of their own.
+                Feature::CryptoObject | Feature::CryptoMaterial => return None,
+            })
         };
-        Feature::ALL.into_iter().filter(|feature| wanted.contains(*feature)).map(layer).collect()
+        Feature::ALL.into_iter().filter(|feature| wanted.contains(*feature)).filter_map(layer).collect()
     }
 }

@@ -5,6 +5,7 @@ mod by_specular_lobes;
 mod caustic_lookups;
 mod chain;
 mod counts;
+mod cryptomatte;
 mod direct_light;
 mod direct_sampling;
 mod effort;
@@ -27,11 +28,13 @@ mod sharp;
 mod surfaces;
 #[cfg(test)]
 mod tests;
+mod tiles;
 mod tracer;
 mod with_light;
 
 pub use by_specular_lobes::LightBySpecularLobes;
 pub use counts::{DROPPED_BRANCHES, EyeCounts};
+pub use cryptomatte::Masks;
 pub use direct_light::merged_points;
 pub use direct_sampling::{DirectSampling, LightSources};
 pub use extra::ExtraSamples;

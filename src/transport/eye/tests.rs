@@ -343,6 +343,7 @@ fn values(layers: &[Layer], name: &str) -> Vec<Vec3> {
         Pixels::Color(image) | Pixels::Vector(image) => image.pixels.clone(),
         Pixels::Scalar(image) => image.pixels.iter().map(|&x| Vec3::X * x).collect(),
         Pixels::Id(image) => image.pixels.iter().map(|&id| Vec3::X * id as f32).collect(),
+        Pixels::Ranks(image) => image.pixels.iter().map(|ranks| Vec3::from_slice(ranks)).collect(),
     }
 }
 
