@@ -1,10 +1,11 @@
 //! Options of reading a scene: its camera and light, and changes of both.
 
 use super::exit::Failure;
+use super::values::scale;
 use anyhow::anyhow;
 use clap::{Args, ValueEnum};
 use glam::DVec3;
-use readers::{EnvironmentChoice, Lighting, LoadOptions, UpAxis, Viewpoint};
+use readers::{EnvironmentChoice, Lens, Lighting, LoadOptions, Looks, UpAxis, Viewpoint};
 use std::path::Path;
 
 /// Options of reading a scene.
@@ -52,11 +53,26 @@ pub struct ReadingArgs {
     define: Vec<(String, String)>,
     /// Units of the lamps of a glTF model, candela or lux, that count for 1 W/sr or 1 W/m² [default: as its exporter
     /// writes them]
-    #[arg(long, value_name = "N", value_parser = lumens)]
+    #[arg(long, value_name = "N", value_parser = scale)]
     lumens_per_watt: Option<f32>,
     /// Render glass of a glTF model without a volume as thin walls, even if Blender wrote a closed mesh
     #[arg(long)]
     thin_glass: bool,
+    /// Radius of the lens of all cameras, in units of the scene: what is not in focus is blurred
+    #[arg(long, value_name = "RADIUS", value_parser = scale)]
+    aperture: Option<f32>,
+    /// Distance in focus along the axis of the camera [default: the surface in the middle of the image]
+    #[arg(long, value_name = "DISTANCE", value_parser = scale, requires = "aperture")]
+    focus: Option<f32>,
+    /// Render all surfaces as grey clay. Emitters and holes stay
+    #[arg(long)]
+    clay: bool,
+    /// Show only meshes with this name, or with a material of this name. `*` stands for any characters. May be repeated
+    #[arg(long, value_name = "NAME")]
+    show: Vec<String>,
+    /// Leave out meshes with this name, or with a material of this name. May be repeated
+    #[arg(long, value_name = "NAME")]
+    hide: Vec<String>,
     /// Number of triangles up to which instances are copied. Copies are traced faster, and instances take less memory
     /// [default: 1000000]
     #[arg(long, value_name = "TRIANGLES")]
@@ -88,7 +104,23 @@ enum UpAxisName {
 /// Azimuth and elevation of the default camera, in degrees.
 const AROUND: [f64; 2] = [30.0, 20.0];
 
+/// Returns a light as a value of --env. The file of a map has its full path.
+pub fn given_light(light: &EnvironmentChoice) -> String {
+    match light {
+        EnvironmentChoice::Map(path) => {
+            std::path::absolute(path).unwrap_or(path.clone()).to_string_lossy().into_owned()
+        }
+        EnvironmentChoice::Constant(radiance) => format!("{},{},{}", radiance.x, radiance.y, radiance.z),
+        EnvironmentChoice::Sky([azimuth, elevation]) => format!("sky,{azimuth},{elevation}"),
+    }
+}
+
 impl ReadingArgs {
+    /// Returns the light that replaces the light of the scene.
+    pub fn env(&self) -> Option<&EnvironmentChoice> {
+        self.env.as_ref()
+    }
+
     /// Returns the options of the scene reader.
     pub fn options(self) -> LoadOptions {
         let around = match (self.azimuth, self.elevation) {
@@ -106,7 +138,17 @@ impl ReadingArgs {
                 no_default: self.no_default_light,
                 hides_background: self.background == Background::None,
             },
-            viewpoint: Viewpoint { from: self.look_from, at: self.look_at, fov: self.fov, around },
+            viewpoint: Viewpoint {
+                from: self.look_from,
+                at: self.look_at,
+                fov: self.fov,
+                around,
+                turntable: None,
+                lens: self
+                    .aperture
+                    .map(|radius| Lens { radius: radius.into(), focus: self.focus.map(f64::from) }),
+            },
+            looks: Looks { clay: self.clay, show: self.show, hide: self.hide },
             most_copied: self.max_copied,
             lumens_per_watt: self.lumens_per_watt,
             thin_glass: self.thin_glass,
@@ -165,12 +207,6 @@ fn angle(text: &str) -> Result<f64, String> {
 fn elevation(text: &str) -> Result<f64, String> {
     let angle = number(text).filter(|angle| angle.abs() <= 90.0);
     angle.ok_or_else(|| "expected an angle from -90 to 90 degrees".to_owned())
-}
-
-fn lumens(text: &str) -> Result<f32, String> {
-    let lumens =
-        number(text).map(|number| number as f32).filter(|lumens| lumens.is_normal() && *lumens > 0.0);
-    lumens.ok_or_else(|| "expected a number above 0".to_owned())
 }
 
 fn point(text: &str) -> Result<DVec3, String> {

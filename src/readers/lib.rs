@@ -31,6 +31,7 @@ mod lacking_uvs;
 mod layers;
 mod lighting;
 mod local;
+mod looks;
 mod mend;
 mod mesh;
 #[cfg(test)]
@@ -67,9 +68,10 @@ pub use error::{Location, SceneError, Severity, Warning};
 pub use file::{fnv1a, read_regular, text_of};
 pub use finish::sanitize::SanitizeReport;
 pub use lighting::{EnvironmentChoice, Lighting, UpAxis};
+pub use looks::Looks;
 pub(crate) use mesh::smooth_normals;
 pub use options::LoadOptions;
-pub use viewpoint::Viewpoint;
+pub use viewpoint::{Lens, Viewpoint};
 pub use views::{SceneView, ViewList};
 
 /// A scene, its cameras, and reports of reading it.
@@ -126,8 +128,7 @@ pub fn load(path: &Path, options: &LoadOptions) -> Result<Loaded, SceneError> {
         }
         _ => return Err(SceneError::UnknownFormat { path: path.to_owned(), kind: file::kind_of(path) }),
     };
-    // Models for printing and from computer-aided design stand on z.
-    let up = options.up.or((extension == "stl").then_some(UpAxis::Z));
+    let up = options.upward(path);
     options.lighting.apply(&mut plan.contents, up.unwrap_or(UpAxis::Y), is_model, path, &mut log)?;
     let Motion { frames, animation_frames, moves } = plan.motion;
     let posed_frames = frames.min(MAX_FRAMES);
@@ -143,6 +144,7 @@ pub fn load(path: &Path, options: &LoadOptions) -> Result<Loaded, SceneError> {
         Some(frame) => fnv1a(format!("{} {frame}", options.hash(hash)).as_bytes()),
         None => options.hash(hash),
     };
+    options.looks.apply(&mut draft, &Location::file(path))?;
     wanted::choose(&mut draft, &mut log)?;
     options.viewpoint.apply(&mut draft, up, &Location::file(path))?;
     let (repairs, coordinates) = sanitize::sanitize(&mut draft, &mut log)?;

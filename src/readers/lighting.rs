@@ -30,7 +30,7 @@ pub enum UpAxis {
 
 impl UpAxis {
     /// Returns the unit vector.
-    pub(crate) fn vector(self) -> DVec3 {
+    pub fn vector(self) -> DVec3 {
         match self {
             UpAxis::Y => DVec3::Y,
             UpAxis::Z => DVec3::Z,
@@ -47,7 +47,7 @@ impl UpAxis {
 
     /// Returns the unit vector at an azimuth, counted from the front towards the viewer's right, and an elevation, in
     /// degrees.
-    pub(crate) fn direction(self, [azimuth, elevation]: [f64; 2]) -> DVec3 {
+    pub fn direction(self, [azimuth, elevation]: [f64; 2]) -> DVec3 {
         let (sin, cos) = azimuth.to_radians().sin_cos();
         let (rise, level) = elevation.to_radians().sin_cos();
         self.turn_from_y().transform_vector3(DVec3::new(sin * level, rise, cos * level))

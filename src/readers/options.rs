@@ -3,6 +3,7 @@
 use crate::error::{Location, SceneError};
 use crate::file::fnv1a;
 use crate::lighting::{Lighting, UpAxis};
+use crate::looks::Looks;
 use crate::viewpoint::Viewpoint;
 use std::path::Path;
 
@@ -21,6 +22,8 @@ pub struct LoadOptions {
     pub lighting: Lighting,
     /// Changes of the camera.
     pub viewpoint: Viewpoint,
+    /// Changes of what the scene shows.
+    pub looks: Looks,
     /// Number of triangles up to which instances are copies; `None` for the default.
     pub most_copied: Option<u64>,
     /// Units of a glTF model's lamps that count for one watt; `None` for the units of its exporter.
@@ -32,6 +35,13 @@ pub struct LoadOptions {
 }
 
 impl LoadOptions {
+    /// Returns the upward axis of the scene at `path`, if it is known. Models for printing and from computer-aided
+    /// design (STL) stand on z.
+    pub fn upward(&self, path: &Path) -> Option<UpAxis> {
+        let is_stl = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("stl"));
+        self.up.or(is_stl.then_some(UpAxis::Z))
+    }
+
     /// Rejects parameters, and any camera but the first, for formats with one camera.
     pub(crate) fn no_choice(&self, path: &Path) -> Result<(), SceneError> {
         self.no_parameters(path)?;
@@ -71,6 +81,10 @@ impl LoadOptions {
         let files = match (self.lumens_per_watt, self.thin_glass) {
             (None, false) => files,
             units_and_glass => fnv1a(format!("{files} {units_and_glass:?}").as_bytes()),
+        };
+        let files = match &self.looks {
+            looks if *looks == Looks::default() => files,
+            looks => fnv1a(format!("{files} {looks:?}").as_bytes()),
         };
         if *lighting == Lighting::default() && *viewpoint == Viewpoint::default() && up.is_none() {
             return fnv1a(format!("{files} {camera:?} {parameters:?}").as_bytes());

@@ -5,8 +5,9 @@ use crate::error::{Location, SceneError};
 use crate::finish::framing;
 use crate::lighting::UpAxis;
 use base::math::{right_of, unit};
-use glam::DVec3;
+use glam::{DQuat, DVec3};
 use scene::Projection;
+use std::f64::consts::TAU;
 
 /// Range of fields of view in degrees, exclusive.
 const FOV: [f64; 2] = [0.0, 180.0];
@@ -23,10 +24,24 @@ pub struct Viewpoint {
     /// Azimuth and elevation in degrees of a camera that sees the whole scene. The azimuth counts from the front
     /// towards the viewer's right.
     pub around: Option<[f64; 2]>,
+    /// Number of frames in which the camera goes once around the middle of the scene, counter-clockwise seen from
+    /// above.
+    pub turntable: Option<usize>,
+    /// Lens of all cameras.
+    pub lens: Option<Lens>,
+}
+
+/// A lens in place of a pinhole, in units of the scene's file.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Lens {
+    /// Radius.
+    pub radius: f64,
+    /// Distance of the plane in focus along the axis; `None` for the surface in the middle of the image.
+    pub focus: Option<f64>,
 }
 
 impl Viewpoint {
-    /// Changes the camera of a draft. A camera that is to see everything stands upright by `up` if that is given.
+    /// Changes the cameras of a draft. A camera that is to see everything stands upright by `up` if that is given.
     ///
     /// # Errors
     /// If the camera would look nowhere.
@@ -36,6 +51,23 @@ impl Viewpoint {
         up: Option<UpAxis>,
         place: &Location,
     ) -> Result<(), SceneError> {
+        self.place(draft, up, place)?;
+        if let Some(frames) = self.turntable {
+            let (axis, middle) = (up.unwrap_or(UpAxis::Y).vector(), framing::middle(draft));
+            let turned = |frame: usize| {
+                let turn = DQuat::from_axis_angle(axis, TAU * frame as f64 / frames as f64);
+                let DraftCamera { origin, forward, right, up, .. } = draft.shot.camera;
+                let origin = middle + turn * (origin - middle);
+                let [forward, right, up] = [forward, right, up].map(|direction| turn * direction);
+                DraftCamera { origin, forward, right, up, ..draft.shot.camera }
+            };
+            draft.shot.path = (0..frames).map(turned).collect();
+        }
+        Ok(())
+    }
+
+    /// Places the camera of a still.
+    fn place(&self, draft: &mut Draft, up: Option<UpAxis>, place: &Location) -> Result<(), SceneError> {
         if let Some(fov) = self.fov {
             if !(fov > FOV[0] && fov < FOV[1]) {
                 return Err(
@@ -116,7 +148,7 @@ mod tests {
         assert!((camera.origin - Vec3::new(0.0, 0.0, 8.0)).length() < 1e-5);
         assert!((camera.forward - Vec3::NEG_Z).length() < 1e-6 && (camera.up - Vec3::Y).length() < 1e-6);
         let at = Some(DVec3::new(18.0, 0.0, 8.0));
-        let wide = Viewpoint { from, at, fov: Some(90.0), around: None };
+        let wide = Viewpoint { from, at, fov: Some(90.0), ..Viewpoint::default() };
         let camera = seen("", wide, None).unwrap().cameras.still;
         assert!((camera.forward - Vec3::X).length() < 1e-6 && (camera.tan_half_x - 1.0).abs() < 1e-6);
         let own = "camera = { origin = [10, 0, 5], target = [10, 0, 0] }";
@@ -136,6 +168,30 @@ mod tests {
             let default = seen("", Viewpoint::default(), Some(up)).unwrap().cameras.still;
             assert!(default.forward.dot(vector) < 0.0 && default.up.dot(vector) > 0.9);
         }
+    }
+
+    #[test]
+    fn turntables_are_circles_on_which_everything_is_in_view() {
+        let turned = |camera: &str, viewpoint: Viewpoint| {
+            let viewpoint = Viewpoint { turntable: Some(8), ..viewpoint };
+            seen(camera, viewpoint, None).unwrap().cameras.path
+        };
+        let own = turned("camera = { origin = [10, 1, 5], target = [10, 0, 0] }", Viewpoint::default());
+        let around = turned("", Viewpoint { around: Some([0.0, 20.0]), ..Viewpoint::default() });
+        for path in [own, around] {
+            assert_eq!(path.len(), 8);
+            for (frame, camera) in path.iter().enumerate() {
+                let (sin, cos) = (frame as f32 * std::f32::consts::FRAC_PI_4).sin_cos();
+                let level = path[0].origin.with_y(0.0).length();
+                let expected = Vec3::new(level * sin, path[0].origin.y, level * cos);
+                assert!((camera.origin - expected).length() < 1e-4, "{frame} {camera:?}");
+                assert!(camera.origin.normalize().dot(camera.forward) < -0.99);
+            }
+        }
+        // The corners of the cube are farther apart than its sides.
+        let still = seen("", Viewpoint { around: Some([0.0, 20.0]), ..Viewpoint::default() }, None);
+        let around = turned("", Viewpoint { around: Some([0.0, 20.0]), ..Viewpoint::default() });
+        assert!(around[0].origin.length() > still.unwrap().cameras.still.origin.length());
     }
 
     #[test]

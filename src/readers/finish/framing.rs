@@ -1,7 +1,7 @@
 //! Cameras for scenes without one: they see the whole scene.
 
 use super::corners;
-use crate::draft::Draft;
+use crate::draft::{Draft, DraftCamera};
 use base::math::unit;
 use glam::{DVec2, DVec3};
 
@@ -35,9 +35,10 @@ pub fn middle(draft: &Draft) -> DVec3 {
     if low.cmple(high).all() { 0.5 * low + 0.5 * high } else { DVec3::ZERO }
 }
 
-/// Moves a camera with `fits` to the nearest point from which it sees all vertices.
+/// Moves a camera with `fits` to the nearest point from which it sees all vertices. The cameras of a turntable, its
+/// path, move to one distance from the middle, from which all of them do.
 ///
-/// The direction and field of view stay. Without vertices the camera moves to `centre`.
+/// The directions and the field of view stay. Without vertices the camera moves to `centre`.
 pub fn frame(draft: &mut Draft, centre: DVec3) {
     if !draft.shot.fits {
         return;
@@ -45,14 +46,7 @@ pub fn frame(draft: &mut Draft, centre: DVec3) {
     let [width, height] = draft.shot.resolution.map(f64::from);
     let mut camera = draft.shot.camera;
     let tan = (1.0 - MARGIN) * camera.tan_half_x * DVec2::new(1.0, height / width);
-    // A point p is within the film's right edge if p·right - x <= tan (p·forward + d), for the camera's offset x and
-    // distance d behind the centre. The other edges are alike.
-    let (mut high, mut low) = (DVec2::NEG_INFINITY, DVec2::NEG_INFINITY);
-    for p in points(draft).map(|p| p - centre) {
-        let (across, depth) = (DVec2::new(p.dot(camera.right), p.dot(camera.up)), p.dot(camera.forward));
-        high = high.max(across - tan * depth);
-        low = low.max(-across - tan * depth);
-    }
+    let [high, low] = extent(draft, &camera, centre, tan);
     if !(high.is_finite() && low.is_finite()) {
         draft.shot.camera.origin = centre;
         return;
@@ -61,6 +55,30 @@ pub fn frame(draft: &mut Draft, centre: DVec3) {
     let distance = (0.5 * (high + low) / tan).max_element();
     camera.origin = centre + camera.right * offset.x + camera.up * offset.y - camera.forward * distance;
     draft.shot.camera = camera;
+    let middle = middle(draft);
+    let needed = |camera: &DraftCamera| {
+        let [high, low] = extent(draft, camera, middle, tan);
+        (high.max(low) / tan).max_element()
+    };
+    let distance = draft.shot.path.iter().map(needed).fold(0.0, f64::max);
+    for camera in &mut draft.shot.path {
+        camera.origin = middle - camera.forward * distance;
+    }
+}
+
+/// Returns how far a film with the tangents `tan` must reach at distance 0 from `centre`: to the right and up, and to
+/// the left and down.
+///
+/// A point p is within the film's right edge if p·right - x <= tan (p·forward + d), for the camera's offset x and
+/// distance d behind the centre. The other edges are alike.
+fn extent(draft: &Draft, camera: &DraftCamera, centre: DVec3, tan: DVec2) -> [DVec2; 2] {
+    let (mut high, mut low) = (DVec2::NEG_INFINITY, DVec2::NEG_INFINITY);
+    for p in points(draft).map(|p| p - centre) {
+        let (across, depth) = (DVec2::new(p.dot(camera.right), p.dot(camera.up)), p.dot(camera.forward));
+        high = high.max(across - tan * depth);
+        low = low.max(-across - tan * depth);
+    }
+    [high, low]
 }
 
 #[cfg(test)]

@@ -28,10 +28,12 @@ pub use transport::eye::{Averaging, Feature, Features, UnknownFeature};
 use crate::method::LightStore;
 use base::stats::{Stage, Stats};
 use embree::EmbreeError;
-use readers::{LoadOptions, Loaded, SanitizeReport, SceneError, Warning, load};
-use scene::{Cameras, Scene};
+use glam::Vec2;
+use readers::{Lens, LoadOptions, Loaded, SanitizeReport, SceneError, Warning, load};
+use scene::{Camera, Cameras, Projection, Scene};
 use std::path::{Path, PathBuf};
 use world::World;
+use world::view::View;
 
 /// A scene prepared for rendering, with the cameras of its file.
 pub struct Session {
@@ -45,6 +47,8 @@ pub struct Session {
     pub stats: Stats,
     /// Virtual lights of the last frame.
     lights: LightStore,
+    /// Lens of all cameras, if the options of reading have one.
+    lens: Option<Lens>,
 }
 
 /// A session, and reports of reading its scene.
@@ -86,7 +90,11 @@ impl Session {
             stats.time(Stage::Load, || load(path, options))?;
         let session = Session::build(scene, cameras, stats)
             .map_err(|source| OpenError::Build { path: path.to_owned(), source })?;
-        Ok(Opened { session: Session { hash, ..session }, warnings, repairs, moves })
+        let mut session = Session { hash, lens: options.viewpoint.lens, ..session };
+        session.cameras.still = session.through_lens(session.cameras.still);
+        let path = session.cameras.path.iter().map(|camera| session.through_lens(*camera));
+        session.cameras.path = path.collect();
+        Ok(Opened { session, warnings, repairs, moves })
     }
 
     /// Prepares a scene made in memory for rendering, on the threads of the current pool.
@@ -99,7 +107,23 @@ impl Session {
 
     fn build(scene: Scene, cameras: Cameras, mut stats: Stats) -> Result<Session, EmbreeError> {
         let world = stats.time(Stage::Build, || World::new(scene, rayon::current_num_threads()))?;
-        Ok(Session { world, cameras, hash: 0, stats, lights: LightStore::default() })
+        Ok(Session { world, cameras, hash: 0, stats, lights: LightStore::default(), lens: None })
+    }
+
+    /// Returns a camera with the lens of all cameras. Without a distance, the surface in the middle of the image is in
+    /// focus. A parallel projection stays, and a camera that sees nothing there.
+    pub(crate) fn through_lens(&self, camera: Camera) -> Camera {
+        let Some(lens) = self.lens.filter(|_| camera.projection != Projection::Parallel) else {
+            return camera;
+        };
+        let scale = 1.0 / self.world.scene.unit();
+        let ray = View::whole(Camera { projection: Projection::Pinhole, ..camera }, [1, 1]);
+        let ray = ray.primary_ray([0, 0], Vec2::splat(0.5));
+        let in_middle = || Some(self.world.intersect(&ray)?.t * ray.direction.dot(camera.forward));
+        let distance = lens.focus.map(|focus| (focus * scale) as f32).or_else(in_middle);
+        let radius = (lens.radius * scale) as f32;
+        distance
+            .map_or(camera, |distance| Camera { projection: Projection::Lens { radius, distance }, ..camera })
     }
 }
 

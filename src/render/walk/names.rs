@@ -1,4 +1,4 @@
-//! File names of frames: `f.####.exr` or `f.%04d.exr`. Numbers are padded with zeros to that many digits.
+//! File names of frames: `f.####.exr` or `f.%04d.png`. Numbers are padded with zeros to that many digits.
 //!
 //! One rule holds for the frames of walks and for single frames.
 
@@ -58,8 +58,9 @@ impl FromStr for FileNames {
                 "the file name has no placeholder for the frame number; write a name like f.####.exr or f.%04d.exr".to_owned()
             );
         };
-        if !names.after.to_ascii_lowercase().ends_with(".exr") {
-            return Err("the file name must end in .exr".to_owned());
+        let is_known = |extension: &str| names.after.to_ascii_lowercase().ends_with(extension);
+        if ![".exr", ".png"].into_iter().any(is_known) {
+            return Err("the file name must end in .exr, or in .png for PNG files alone".to_owned());
         }
         Ok(names)
     }
@@ -153,7 +154,7 @@ mod tests {
             assert!(error(bad).contains("####"), "{bad}");
         }
         assert!(error("#_%d.exr").contains("more than one") && error("#a#.exr").contains("more than one"));
-        assert!(error("f.####.png").contains(".exr"));
+        assert!(error("f.####.jpg").contains(".exr"));
         for bad in ["f.%99d.exr", "f.%99999999999999999999999d.exr"] {
             assert!(error(bad).contains("digits"), "{bad}");
         }

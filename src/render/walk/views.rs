@@ -36,7 +36,7 @@ impl ListedViews {
         let place = |(&number, view): (&usize, SceneView)| {
             let film = resolution(view.resolution.unwrap_or(session.cameras.resolution));
             let framing = Framing { frame: None, resolution: Some(film), crop };
-            let cameras = Cameras { still: view.camera, ..Cameras::default() };
+            let cameras = Cameras { still: session.through_lens(view.camera), ..Cameras::default() };
             View::new(&cameras, &framing).map_err(|error| ListedViewsError::Film { number, error })
         };
         let cameras = list.in_scene(&session.world.scene)?;
