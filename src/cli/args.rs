@@ -1,6 +1,7 @@
 //! Arguments of the command line. `--help` prints the doc comments of this file.
 
 use super::bench_args::BenchArgs;
+use super::dataset_args::{self, DatasetArgs};
 use super::denoise_args::DenoiseFileArgs;
 use super::develop::DevelopArgs;
 use super::exit;
@@ -44,7 +45,14 @@ impl Cli {
             command = command.long_version(version::text());
         }
         let matches = command.try_get_matches_from_mut(set_args::joined(arguments)?)?;
-        Cli::from_arg_matches(&matches).map_err(|error| error.format(&mut command))
+        let mut cli = Cli::from_arg_matches(&matches).map_err(|error| error.format(&mut command))?;
+        if let Command::Dataset(args) = &mut cli.command
+            && let Some((name, matches)) = matches.subcommand()
+            && let Some(command) = command.find_subcommand(name)
+        {
+            args.options = set_args::typed(command, matches, &dataset_args::OWN);
+        }
+        Ok(cli)
     }
 
     /// Returns the definition of all commands and options.
@@ -78,6 +86,8 @@ pub enum Command {
     Walk(Box<WalkArgs>),
     /// Render many cameras of one scene, which share what does not depend on the camera
     Views(Box<ViewsArgs>),
+    /// Render many models from random cameras, as a data set
+    Dataset(Box<DatasetArgs>),
     /// Render the images, walks and views that job files list
     Batch(BatchArgs),
     /// Print what a scene contains and requires
@@ -147,9 +157,17 @@ pub struct WalkArgs {
     /// Scene with a camera path: lightsplat TOML (.toml), or glTF (.glb, .gltf) with an animation. Each frame shows the
     /// model in its pose of the animation, at 24 frames per second
     pub scene: PathBuf,
-    /// Images to write. `####` or `%04d` stands for the number of the frame: f.####.exr or f.%04d.exr
+    /// Images to write. `####` or `%04d` stands for the number of the frame: f.####.exr or f.%04d.exr. f.####.png means
+    /// PNG files alone
     #[arg(short, long, value_name = "NAME.####.exr")]
     pub output: FileNames,
+    /// Turn the camera once around the scene in N frames, instead of following a path. The camera is the camera of a
+    /// still
+    #[arg(long, value_name = "N", value_parser = counted)]
+    pub turntable: Option<NonZeroUsize>,
+    /// Movie of the frames, which ffmpeg encodes from their PNG files
+    #[arg(long, value_name = "FILE.mp4", conflicts_with = "no_png")]
+    pub movie: Option<PathBuf>,
     /// Frames to render, counted from 1: 7, 1-10, 1-100x5 (every fifth), or a list of ranges. 1..10, 1:10
     /// and 1-100:5 are read, too [default: all]
     #[arg(short, long, value_name = "LIST")]
@@ -212,6 +230,10 @@ pub struct BatchArgs {
     /// Skip complete images and frames of the same scene, settings and program version
     #[arg(long)]
     pub resume: bool,
+    /// Number of entries that are rendered at a time, each with an equal part of the threads. All images stay the same.
+    /// Many small images take less time so
+    #[arg(short = 'j', long = "jobs", value_name = "N", value_parser = counted, default_value = "1")]
+    pub at_once: NonZeroUsize,
     /// Number of threads. The images do not depend on it [default: number of processors]
     #[arg(long, env = threads::VARIABLE, value_parser = clap::value_parser!(u32).range(1..=4096))]
     pub threads: Option<u32>,

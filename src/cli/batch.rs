@@ -7,7 +7,8 @@ use super::batch_file::{self, JobEntry};
 use super::course::RunSpan;
 use super::exit::{self, Failure};
 use super::job::RenderJob;
-use super::values::Loudness;
+use super::side_by_side::SideBySide;
+use super::values::{Loudness, ProgressMode};
 use super::walk_job::WalkJob;
 use super::{batch_outputs, interrupt, opened, render, talk, threads, views, walk};
 use ::render::session::Opened;
@@ -16,9 +17,11 @@ use anyhow::{Context, anyhow};
 use base::progress::Control;
 use base::stats::Stopwatch;
 use serde_json::json;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::sync::Arc;
+use std::path::PathBuf;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// Runs the command.
 pub fn run(args: BatchArgs) -> Result<(), Failure> {
@@ -35,17 +38,9 @@ pub fn run(args: BatchArgs) -> Result<(), Failure> {
     if let Some(only) = &args.only {
         entries = chosen(entries, only)?;
     }
-    let control = Arc::new(Control::new());
-    interrupt::cancel_on_signal(&control).context("cannot catch signals").map_err(Failure::render)?;
-    let pool = threads::pool(threads::count(args.threads))?;
-    let mut batch =
-        BatchRun { args, control, span: RunSpan::whole(), count: entries.len(), begun: 0, failed: 0 };
-    // Report outputs that cannot be written before hours of work.
-    entries.retain(|entry| {
-        let checked = batch.command(entry).map(drop);
-        batch.settle(entry, checked).is_some()
-    });
-    pool.install(|| batch.render(entries))
+    let BatchArgs { dry_run, progress, at_once, .. } = args;
+    BatchRun::new(Manner { jobs: at_once.get(), dry_run, progress })?
+        .run(entries, threads::count(args.threads))
 }
 
 /// Prints the number, the scene and the output of each entry, and the views of a chunk.
@@ -70,18 +65,61 @@ fn chosen(entries: Vec<JobEntry>, only: &FrameList) -> Result<Vec<JobEntry>, Fai
     Ok((1..).zip(entries).filter(|(number, _)| numbers.contains(number)).map(|(_, entry)| entry).collect())
 }
 
+/// How entries are rendered.
+#[derive(Clone, Copy)]
+pub struct Manner {
+    /// Maximum number of entries at a time.
+    pub jobs: usize,
+    /// True if nothing is rendered or written.
+    pub dry_run: bool,
+    /// Form of the messages on stderr.
+    pub progress: ProgressMode,
+}
+
 /// A running batch.
-struct BatchRun {
-    args: BatchArgs,
+pub struct BatchRun {
+    manner: Manner,
     control: Arc<Control>,
-    /// Part of the progress of the run that the batch takes.
-    span: RunSpan,
-    /// Number of entries.
-    count: usize,
     /// Number of entries that were started.
-    begun: usize,
+    begun: AtomicUsize,
     /// Number of entries that failed.
-    failed: usize,
+    failed: AtomicUsize,
+}
+
+/// An entry, and its scene, which the first entry reads and the last one drops.
+struct Task {
+    entry: JobEntry,
+    opened: Arc<Mutex<Option<Arc<Opened>>>>,
+}
+
+/// Part of a batch that an entry takes.
+#[derive(Clone, Copy)]
+struct Part {
+    /// Maximum number of views of a list at a time.
+    jobs: usize,
+    progress: ProgressMode,
+    span: RunSpan,
+    /// Number of entries of the batch.
+    count: usize,
+}
+
+/// Returns tasks ordered by scene. Entries of one scene share it.
+fn by_scene(entries: Vec<JobEntry>) -> Vec<Task> {
+    let mut numbers: BTreeMap<(PathBuf, String), usize> = BTreeMap::new();
+    let mut scenes: Vec<Vec<JobEntry>> = Vec::new();
+    for entry in entries {
+        let key = (entry.scene.clone(), format!("{:?}", entry.reading));
+        let number = *numbers.entry(key).or_insert(scenes.len());
+        if number == scenes.len() {
+            scenes.push(Vec::new());
+        }
+        scenes[number].push(entry);
+    }
+    let tasks = |entries: Vec<JobEntry>| {
+        let opened = Arc::default();
+        entries.into_iter().map(move |entry| Task { entry, opened: Arc::clone(&opened) })
+    };
+    scenes.into_iter().flat_map(tasks).collect()
 }
 
 /// A checked entry: an image, or a walk or the views of a list.
@@ -91,79 +129,115 @@ enum Job {
 }
 
 impl BatchRun {
-    /// Renders the entries, ordered by scene.
-    fn render(mut self, mut left: Vec<JobEntry>) -> Result<(), Failure> {
-        while let Some(first) = left.first().cloned() {
-            let is_of_scene =
-                |entry: &JobEntry| (&entry.scene, &entry.reading) == (&first.scene, &first.reading);
-            let (of_scene, others) = left.into_iter().partition(is_of_scene);
-            left = others;
-            self.scene(of_scene)?;
-        }
-        let done = self.count - self.failed;
-        let what = if self.args.dry_run { "can be rendered" } else { "done" };
+    /// Prepares to render. Signals stop the run.
+    pub fn new(manner: Manner) -> Result<BatchRun, Failure> {
+        let control = Arc::new(Control::new());
+        interrupt::cancel_on_signal(&control).context("cannot catch signals").map_err(Failure::render)?;
+        Ok(BatchRun { manner, control, begun: AtomicUsize::new(0), failed: AtomicUsize::new(0) })
+    }
+
+    /// Checks and renders the entries.
+    ///
+    /// # Errors
+    /// If an entry fails. The others are rendered unless a signal stopped the run.
+    pub fn run(&self, mut entries: Vec<JobEntry>, threads: usize) -> Result<(), Failure> {
+        let count = entries.len();
+        // Report outputs that cannot be written before hours of work.
+        entries.retain(|entry| {
+            let checked = self.command(entry).map(drop);
+            self.settle(entry, checked).is_some()
+        });
+        let tasks = by_scene(entries);
+        threads::pool(threads)?.install(|| self.render(tasks, count))?;
+        let failed = self.failed.load(Ordering::Relaxed);
+        let done = count - failed;
+        let what = if self.manner.dry_run { "can be rendered" } else { "done" };
         talk::summary(
-            &format!("{done} of {} images, walks and views {what}", self.count),
-            || json!({ "done": done, "failed": self.failed }),
+            &format!("{done} of {count} images, walks and views {what}"),
+            || json!({ "done": done, "failed": failed }),
         );
-        match self.failed {
+        let others = if done > 0 { "; the others are complete" } else { "" };
+        match failed {
             0 => Ok(()),
             failed => {
-                let others = if done > 0 { "; the others are complete" } else { "" };
-                let message = anyhow!("{failed} of {} images, walks and views failed{others}", self.count);
-                Err(Failure::in_part(message))
+                Err(Failure::in_part(anyhow!("{failed} of {count} images, walks and views failed{others}")))
             }
         }
     }
 
-    /// Reads a scene and renders its entries.
+    /// Renders the tasks of a batch with `count` entries.
     ///
     /// # Errors
     /// If a signal stopped the run. Other failures are counted.
-    fn scene(&mut self, entries: Vec<JobEntry>) -> Result<(), Failure> {
-        let mut opened = None;
-        for entry in &entries {
-            if self.control.is_cancelled() {
-                let message = "interrupted; run the same command with --resume to continue";
-                return Err(Failure::interrupted(anyhow!(message)));
-            }
-            talk::event(
-                "picture",
-                || json!({ "state": "start", "index": self.begun, "count": self.count, "output": entry.output.to_string_lossy() }),
-            );
-            let span = self.span.part(self.begun, self.count);
-            self.begun += 1;
-            // A defect of one image must not stop the others. The panic hook has printed it.
-            let done = catch_unwind(AssertUnwindSafe(|| self.entry(entry, &mut opened, span)));
-            let done = done.unwrap_or_else(|_| {
-                Err(Failure::render(anyhow!(
-                    "an internal error stopped this image; please report it with the lines above"
-                )))
-            });
-            match done {
-                Err(failure) if self.control.is_cancelled() => return Err(failure),
-                done => {
-                    let ok = self.settle(entry, done).is_some();
-                    talk::event(
-                        "picture",
-                        || json!({ "state": if ok { "end" } else { "failed" }, "output": entry.output.to_string_lossy() }),
-                    );
-                }
-            }
+    fn render(&self, tasks: Vec<Task>, count: usize) -> Result<(), Failure> {
+        let Manner { jobs, progress, .. } = self.manner;
+        let (at_once, span) = (jobs.min(tasks.len()), RunSpan::whole());
+        // The rest of the threads goes to the views of each list.
+        let within = jobs / at_once.max(1);
+        if at_once > 1 {
+            let quiet = Part { jobs: within, progress: ProgressMode::None, span, count };
+            return SideBySide { jobs: at_once, control: &self.control, progress, span }
+                .each(tasks, |task, control| self.task(&task, quiet, control));
         }
-        Ok(())
+        let index = || self.begun.load(Ordering::Relaxed);
+        let part = || Part { jobs: within, progress, span: span.part(index(), count), count };
+        tasks.into_iter().try_for_each(|task| self.task(&task, part(), &self.control))
     }
 
-    /// Renders an entry. Reads its scene if `opened` is empty.
-    fn entry(&self, entry: &JobEntry, opened: &mut Option<Opened>, span: RunSpan) -> Result<(), Failure> {
+    /// Renders an entry.
+    ///
+    /// # Errors
+    /// If a signal stopped the run. Other failures are counted.
+    fn task(&self, task: &Task, part: Part, control: &Control) -> Result<(), Failure> {
+        let entry = &task.entry;
+        if control.is_cancelled() {
+            let message = "interrupted; run the same command with --resume to continue";
+            return Err(Failure::interrupted(anyhow!(message)));
+        }
+        let (index, count, output) =
+            (self.begun.fetch_add(1, Ordering::Relaxed), part.count, entry.output.to_string_lossy());
+        talk::event(
+            "picture",
+            || json!({ "state": "start", "index": index, "count": count, "output": output }),
+        );
+        // A defect of one image must not stop the others. The panic hook has printed it.
+        let done = catch_unwind(AssertUnwindSafe(|| self.entry(task, part, control)));
+        let done = done.unwrap_or_else(|_| {
+            Err(Failure::render(anyhow!(
+                "an internal error stopped this image; please report it with the lines above"
+            )))
+        });
+        match done {
+            Err(failure) if control.is_cancelled() => Err(failure),
+            done => {
+                let state = if self.settle(entry, done).is_some() { "end" } else { "failed" };
+                talk::event("picture", || json!({ "state": state, "output": output }));
+                Ok(())
+            }
+        }
+    }
+
+    /// Renders an entry. Reads its scene if no other entry has.
+    fn entry(&self, task: &Task, part: Part, control: &Control) -> Result<(), Failure> {
+        let entry = &task.entry;
         let job = self.command(entry)?;
-        let opened = match opened {
-            Some(opened) => opened,
-            None => opened.insert(opened::open(&entry.scene, &entry.reading)?),
+        let opened = {
+            // A panic leaves it empty or complete.
+            let mut opened = task.opened.lock().unwrap_or_else(PoisonError::into_inner);
+            match &*opened {
+                Some(opened) => Arc::clone(opened),
+                None => Arc::clone(opened.insert(Arc::new(opened::open(&entry.scene, &entry.reading)?))),
+            }
         };
         match job {
-            Job::Still(job) => render::still(&job, opened, span, &self.control),
-            Job::Walk(job) => walk::walk(*job, opened, span, &self.control),
+            Job::Still(mut job) => {
+                job.progress = part.progress;
+                render::still(&job, &opened, part.span, control)
+            }
+            Job::Walk(mut job) => {
+                (job.progress, job.jobs) = (part.progress, part.jobs);
+                walk::walk(*job, &opened, part.span, control)
+            }
         }
     }
 
@@ -171,18 +245,18 @@ impl BatchRun {
     fn command(&self, entry: &JobEntry) -> Result<Job, Failure> {
         match entry.command()? {
             Command::Render(mut args) => {
-                args.picture.progress = self.args.progress;
-                args.picture.dry_run |= self.args.dry_run;
+                args.picture.progress = self.manner.progress;
+                args.picture.dry_run |= self.manner.dry_run;
                 Ok(Job::Still(Box::new(RenderJob::new(*args, Stopwatch::start())?)))
             }
             Command::Walk(mut args) => {
-                args.picture.progress = self.args.progress;
-                args.picture.dry_run |= self.args.dry_run;
+                args.picture.progress = self.manner.progress;
+                args.picture.dry_run |= self.manner.dry_run;
                 Ok(Job::Walk(Box::new(WalkJob::new(*args)?)))
             }
             Command::Views(mut args) => {
-                args.picture.progress = self.args.progress;
-                args.picture.dry_run |= self.args.dry_run;
+                args.picture.progress = self.manner.progress;
+                args.picture.dry_run |= self.manner.dry_run;
                 Ok(Job::Walk(Box::new(views::job(*args)?)))
             }
             _ => Err(Failure::usage(anyhow!(
@@ -193,9 +267,9 @@ impl BatchRun {
     }
 
     /// Counts and prints a failure; returns `None` if there is one.
-    fn settle(&mut self, entry: &JobEntry, done: Result<(), Failure>) -> Option<()> {
+    fn settle(&self, entry: &JobEntry, done: Result<(), Failure>) -> Option<()> {
         done.map_err(|failure| {
-            self.failed += 1;
+            self.failed.fetch_add(1, Ordering::Relaxed);
             let is_of_job = failure.code() == exit::USAGE;
             let failure = failure.within(&entry.output);
             talk::error(&if is_of_job { failure.at(&entry.place) } else { failure });

@@ -2,12 +2,12 @@
 //!
 //! An entry becomes the arguments of `views` if it names a list of views, and of `walk` if the name of its file has a
 //! placeholder for a number and no `frame` is given. Other entries become arguments of `render`. So a job file may hold
-//! every option of these commands, with the same meaning. Views in chunks are one entry per chunk.
+//! every option of these commands, with the same meaning. `look_from` and `look-from` are one key. Views in chunks are
+//! one entry per chunk.
 
 use super::args::{Cli, Command};
 use super::exit::Failure;
-use super::set_args;
-use super::walk_job::FIRST_POSE;
+use super::{set_args, walk_job};
 use anyhow::{Context, anyhow, bail};
 use base::file_kind::file_kind;
 use clap::error::{ContextKind, ContextValue};
@@ -23,10 +23,13 @@ use std::path::{Path, PathBuf};
 use toml::{Spanned, Table, Value};
 
 /// Options of the batch, which entries cannot have.
-const OF_THE_BATCH: [&str; 2] = ["threads", "progress"];
+const OF_THE_BATCH: [&str; 3] = ["jobs", "threads", "progress"];
 
 /// Options that name a file.
-const FILES: [&str; 3] = ["png", "preview", "env"];
+const FILES: [&str; 4] = ["png", "preview", "env", "movie"];
+
+/// Options whose list of two numbers is a size.
+const SIZES: [&str; 2] = ["resolution", "size"];
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -141,7 +144,7 @@ pub fn read(path: &Path, more: &[&str]) -> Result<Vec<JobEntry>, Failure> {
     let line_of =
         |key: &Spanned<String>| 1 + text.get(..key.span().start).unwrap_or_default().matches('\n').count();
     let lines_of = |keys: &BTreeMap<Spanned<String>, Value>| -> BTreeMap<String, usize> {
-        keys.keys().map(|key| (key.get_ref().clone(), line_of(key))).collect()
+        keys.keys().map(|key| (spelled(key.get_ref()), line_of(key))).collect()
     };
     let of_all = lines_of(&keys.options);
     let folder = path.parent().unwrap_or(Path::new(""));
@@ -152,8 +155,8 @@ pub fn read(path: &Path, more: &[&str]) -> Result<Vec<JobEntry>, Failure> {
             let mut lines = of_all.clone();
             lines.extend(lines_of(keys));
             let line = lines.get("output").copied().unwrap_or_default();
-            let mut options = file.options.clone();
-            options.extend(picture.options);
+            let own = file.options.iter().chain(&picture.options);
+            let options = own.map(|(key, value)| (spelled(key), value.clone())).collect();
             let file = folder.join(&picture.scene);
             let is_built_in = readers::is_built_in(&picture.scene) && !file.is_file();
             let entry = JobEntry {
@@ -214,7 +217,7 @@ impl JobEntry {
             Command::Render(args) => {
                 args.picture.reading.options_at(&args.scene, args.frame.map(NonZeroUsize::get))
             }
-            Command::Walk(args) => args.picture.reading.options_at(&args.scene, Some(FIRST_POSE)),
+            Command::Walk(args) => walk_job::reading(&args),
             Command::Views(args) => args.picture.reading.options_at(&args.scene, None),
             _ => LoadOptions::default(),
         };
@@ -242,6 +245,11 @@ impl JobEntry {
     }
 }
 
+/// Returns the name of an option in the spelling of the command line, which has hyphens.
+fn spelled(key: &str) -> String {
+    key.replace('_', "-")
+}
+
 /// Returns true if the value of an option that may name a file does.
 fn is_file(name: &str, value: &str) -> bool {
     name != "env" || matches!(value.parse(), Ok(EnvironmentChoice::Map(_)))
@@ -264,7 +272,7 @@ fn option(name: &str, value: &Value) -> Option<Vec<String>> {
         }
         Value::Array(values) => {
             let numbers: Option<Vec<String>> = values.iter().map(scalar).collect();
-            with(numbers?.join(","))
+            with(numbers?.join(if SIZES.contains(&name) { "x" } else { "," }))
         }
         value => with(scalar(value)?),
     }
@@ -302,6 +310,9 @@ mod tests {
             spp = 2
             png = "shown.png"
             accuracy = [0.5, 0.25]
+            resolution = [32, 16]
+            look_from = [1, 2.5, -3]
+            look-at = "0,1,0"
             [[picture]]
             scene = "b.xml"
             output = "out/b.##.exr"
@@ -322,6 +333,9 @@ mod tests {
         assert_eq!(still.method.method().unwrap().spp(), 2);
         let Method::Vpl(settings) = still.method.method().unwrap() else { panic!("{still:?}") };
         assert_eq!(settings.cache.accuracy, [0.5, 0.25]);
+        assert_eq!(still.picture.resolution, Some("32x16".parse().unwrap()));
+        let viewpoint = found[0].reading.viewpoint.clone();
+        assert_eq!((viewpoint.from.unwrap().y, viewpoint.at.unwrap().y), (2.5, 1.0));
         assert!(still.picture.resume && still.picture.denoise.denoise() == Some(true));
         let Command::Walk(walk) = found[1].command().unwrap() else { panic!("{found:?}") };
         assert_eq!((walk.method.method().unwrap().spp(), walk.frames.unwrap().last()), (8, 4));
@@ -344,6 +358,7 @@ mod tests {
         assert!(!unknown.contains("error:") && !unknown.contains("Usage"), "{unknown}");
         let of_all = error("options = {\n spp = 'many' }\n[[picture]]\nscene = 'a.toml'\noutput = 'a.exr'");
         assert!(of_all.contains("line 2: ") && of_all.contains("many"), "{of_all}");
+        assert!(with("look_from = 'x'").contains("job.toml, line 4: "));
         assert!(with("spp = { a = 1 }").contains("`spp` cannot be"));
         assert!(with("threads = 3").contains("batch --threads"));
         assert!(with("frames = '1-4'").contains("--frames"));

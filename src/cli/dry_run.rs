@@ -34,10 +34,7 @@ pub fn walk(
     listed: Option<&ListedViews>,
 ) -> Result<(), Failure> {
     let unwritten = chunks.iter().flat_map(PlannedChunk::unwritten);
-    let files = unwritten.flat_map(|number| {
-        let (exr, png) = job.files(number);
-        [exr].into_iter().chain(png).map(|path| path.display().to_string())
-    });
+    let files = unwritten.flat_map(|number| job.files(number).names());
     let files: Vec<String> =
         files.chain(job.previews.file().map(|path| path.display().to_string())).collect();
     let Some(first) = chunks.iter().flat_map(|chunk| &chunk.frames).next() else { return Ok(()) };

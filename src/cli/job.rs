@@ -4,6 +4,7 @@ use super::args::RenderArgs;
 use super::exit::Failure;
 use super::live::Previews;
 use super::outputs::{Inputs, OutputCheck};
+use super::picture::Forms;
 use super::picture_args::{PictureArgs, StatsFormat};
 use super::still_files::StillFiles;
 use super::values::{ProgressMode, Resolution};
@@ -36,6 +37,8 @@ pub struct RenderJob {
     pub reproducible: bool,
     /// Method, goal, and measurement of the error.
     pub goal: Goal,
+    /// Forms of the files.
+    pub forms: Forms,
     /// Number of threads.
     pub threads: usize,
     /// Frame of the camera path; `None` for the still camera.
@@ -90,7 +93,8 @@ impl RenderJob {
         if files.exr.is_none() {
             say_left_out(&args.picture)?;
         }
-        let averaging = args.picture.averaging();
+        let (averaging, features, forms) =
+            (args.picture.averaging(), args.picture.features(), args.picture.forms());
         let dry_run = args.picture.dry_run;
         let check = OutputCheck { may_stay: args.picture.resume, is_dry: dry_run };
         files.check(check, args.picture.no_overwrite)?;
@@ -104,7 +108,7 @@ impl RenderJob {
             may_choose,
             plan,
             averaging,
-            features: args.picture.aov.into_iter().collect(),
+            features,
             denoise: args.picture.denoise.denoise(),
             denoise_quality: args.picture.denoise.quality(),
             keep_noisy: args.picture.denoise.keep_noisy,
@@ -126,6 +130,7 @@ impl RenderJob {
             resume: args.picture.resume,
             reproducible: args.picture.reproducible,
             goal,
+            forms,
             threads: threads::count(args.picture.threads),
             frame: args.frame.map(NonZeroUsize::get),
             size: args.picture.resolution,
@@ -140,7 +145,11 @@ impl RenderJob {
     pub fn key(&self, session: &Session) -> String {
         let tone = self.files.png.as_ref().map(|(_, tone)| tone.to_string());
         let framing = format!("{:?}", self.framing(session));
-        job_key::job_key(session, &self.goal, json!([framing, tone, self.reproducible]))
+        job_key::job_key(
+            session,
+            &self.goal,
+            job_key::files(json!([framing, tone, self.reproducible]), self.forms),
+        )
     }
 
     /// Returns frame, film size and crop.

@@ -1,5 +1,6 @@
 //! The key of an image: a hash of everything that its files depend on. `--resume` compares it.
 
+use super::picture::Forms;
 use base::film::ExrFile;
 use readers::{ViewList, fnv1a};
 use render::method::path::PartialImage;
@@ -31,6 +32,11 @@ pub fn job_key(session: &Session, goal: &Goal, more: Value) -> String {
         "verify": format!("{verify:?}"),
         "more": more,
     }))
+}
+
+/// Returns dependencies with the forms of the files, unless these are the usual ones.
+pub fn files(more: Value, forms: Forms) -> Value {
+    if forms == Forms::default() { more } else { json!([more, format!("{forms:?}")]) }
 }
 
 /// Returns the key of the views of a list with the key `job`. Exposure and virtual lights depend on all views.

@@ -17,6 +17,8 @@ mod chart;
 mod cli_page;
 mod compare;
 mod course;
+mod dataset;
+mod dataset_args;
 mod demo;
 mod denoise;
 mod denoise_args;
@@ -28,6 +30,7 @@ mod exit;
 mod files;
 mod generate;
 mod generate_args;
+mod ids;
 mod info;
 mod info_lists;
 mod interrupt;
@@ -37,6 +40,7 @@ mod live;
 mod live_args;
 mod merge;
 mod method_args;
+mod movie;
 mod opened;
 mod outputs;
 mod picture;
@@ -48,8 +52,10 @@ mod reading_args;
 mod render;
 mod set_args;
 mod sheet;
+mod shell;
 mod short_help;
 mod shots;
+mod side_by_side;
 mod still_files;
 mod study;
 mod talk;
@@ -103,6 +109,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Render(args) => render::run(*args),
         Command::Walk(args) => walk::run(*args),
         Command::Views(args) => views::run(*args),
+        Command::Dataset(args) => dataset::run(*args),
         Command::Batch(args) => batch::run(args),
         Command::Info(args) => info::run(args),
         Command::Denoise(args) => denoise::run(args),

@@ -2,7 +2,9 @@
 
 use super::exit::Failure;
 use super::talk;
-use base::film::{ExrFile, Film, Image, Look, false_colour, write_exr, write_png, write_srgb8};
+use base::film::{
+    ExrFile, Film, Image, Look, Pixels, false_colour, write_exr, write_grey16, write_png, write_srgb8,
+};
 use base::stats::StageTime;
 use std::path::{Path, PathBuf};
 
@@ -27,6 +29,12 @@ impl Written {
         format!("wrote {} ({width}x{height}, {seconds:.1} s{exposure})", self.names)
     }
 }
+
+/// Layer of depth.
+const DEPTH: &str = "depth.Z";
+
+/// Depth from which on there is no surface.
+const FAR: f32 = 1e10;
 
 /// Facts of an image that differ between equal renders.
 const CIRCUMSTANCES: [&str; 2] = ["render_seconds", "threads"];
@@ -70,28 +78,51 @@ pub fn is_partial(exr: &Path) -> bool {
     ExrFile::read(exr).is_ok_and(|file| file.metadata().text("partial") == Some("true"))
 }
 
-/// Writes an image to `exr`, if given, then PNG files.
+/// Forms of the files of an image.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Forms {
+    /// True if colours, albedos and normals of the OpenEXR file are half floats.
+    pub half: bool,
+    /// Factor from depth to the numbers of a PNG file of 16 bits, if there is to be one.
+    pub depth: Option<f32>,
+}
+
+/// Writes PNG files, if given, and then an image to `exr`, if given: if it exists after a kill, the others exist.
 ///
 /// # Errors
-/// If a file cannot be written.
-pub fn write(exr: Option<&Path>, png: Option<(&Path, Look)>, mut film: Film) -> Result<Written, Failure> {
+/// If a file cannot be written. The others are written nevertheless.
+pub fn write(
+    exr: Option<&Path>,
+    png: Option<(&Path, Look)>,
+    mut film: Film,
+    forms: Forms,
+) -> Result<Written, Failure> {
+    film.half = forms.half;
     let mut written = describe(exr, png, &mut film);
+    let previews = write_previews(png, &film);
+    let main = exr.or(png.map(|(path, _)| path));
+    let depth = forms
+        .depth
+        .zip(main)
+        .map(|(scale, main)| write_depth(&main.with_extension("depth.png"), scale, &film));
     if let Some(exr) = exr {
         write_exr(exr, &film).map_err(Failure::output)?;
     }
-    written.files.extend(write_previews(png, &film)?);
+    written.files.extend(previews?);
+    written.files.extend(depth.transpose()?.flatten());
     Ok(written)
 }
 
-/// Writes an image like [`write()`], with the OpenEXR file last: if it exists, the others exist.
-///
-/// # Errors
-/// If a file cannot be written.
-pub fn write_exr_last(exr: &Path, png: Option<(&Path, Look)>, mut film: Film) -> Result<Written, Failure> {
-    let mut written = describe(Some(exr), png, &mut film);
-    written.files.extend(write_previews(png, &film)?);
-    write_exr(exr, &film).map_err(Failure::output)?;
-    Ok(written)
+/// Writes the layer of depth, times `scale`, as numbers of 16 bits. 0 stands for no surface. Returns the file, if there
+/// is such a layer.
+fn write_depth(path: &Path, scale: f32, film: &Film) -> Result<Option<PathBuf>, Failure> {
+    let layer = film.layers.iter().find(|layer| layer.name == DEPTH).map(|layer| &layer.pixels);
+    let Some(Pixels::Scalar(depth)) = layer else { return Ok(None) };
+    // `as` saturates.
+    let number = |depth: &f32| if *depth < FAR { (depth * scale).round() as u16 } else { 0 };
+    let numbers: Vec<u16> = depth.pixels.iter().map(number).collect();
+    write_grey16(path, [depth.width, depth.height], &numbers).map_err(Failure::output)?;
+    Ok(Some(path.to_owned()))
 }
 
 /// Stores the exposure of the PNG in the film. Returns what there is to say, and the OpenEXR file.

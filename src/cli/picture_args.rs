@@ -2,11 +2,12 @@
 
 use super::denoise_args::DenoiseArgs;
 use super::live_args::LiveArgs;
+use super::picture::Forms;
 use super::reading_args::ReadingArgs;
-use super::values::{Crop, Loudness, ProgressMode, Resolution, feature};
+use super::values::{Crop, Loudness, ProgressMode, Resolution, feature, scale};
 use super::{talk, threads};
 use clap::{Args, ValueEnum};
-use render::session::{Averaging, Feature};
+use render::session::{Averaging, Feature, Features};
 
 /// Options of all commands that render images.
 #[derive(Debug, Args)]
@@ -29,6 +30,13 @@ pub struct PictureArgs {
     /// Samples that these layers describe. Alpha is always a mean
     #[arg(long, value_enum, value_name = "MODE", default_value_t)]
     aov_mode: AovMode,
+    /// Write colours, albedos and normals as half floats. Depth, positions, ids and masks stay 32-bit
+    #[arg(long)]
+    half: bool,
+    /// Write depth as NAME.depth.png with 16 bits, as the number of steps of 1/STEPS. With 1000, a scene in metres has
+    /// depth in millimetres. 0 is no surface, and 65535 is the maximum
+    #[arg(long, value_name = "STEPS", value_parser = scale)]
+    depth_png: Option<f32>,
     /// Denoising.
     #[command(flatten)]
     pub denoise: DenoiseArgs,
@@ -70,6 +78,16 @@ impl PictureArgs {
             AovMode::Mean => Averaging::Mean,
             AovMode::First => Averaging::First,
         }
+    }
+
+    /// Returns the features that are kept as layers.
+    pub fn features(&self) -> Features {
+        self.aov.iter().copied().chain(self.depth_png.map(|_| Feature::Depth)).collect()
+    }
+
+    /// Returns the forms of the files.
+    pub fn forms(&self) -> Forms {
+        Forms { half: self.half, depth: self.depth_png }
     }
 
     /// Returns how much is to be said.

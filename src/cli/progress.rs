@@ -86,11 +86,6 @@ impl Watch {
         }
         result
     }
-
-    /// Returns the number of complete frames and the number of all frames.
-    pub fn frames(&self) -> [usize; 2] {
-        self.run.frames()
-    }
 }
 
 /// Shows one progress bar of the whole run until the work ends.
@@ -207,7 +202,7 @@ mod tests {
             let mut watch = Watch::new(mode, RunProgress::new(2, Stages::default(), RunSpan::whole()));
             assert_eq!(watch.frame(None, &control, || 7, |result| *result == 7), 7);
             assert_eq!(watch.frame(None, &control, || 8, |result| *result == 7), 8);
-            assert_eq!(watch.frames(), [1, 2]);
+            assert_eq!(watch.run.frames(), [1, 2]);
         }
     }
 }

@@ -9,7 +9,7 @@ use super::live::{Showing, ShownFrame};
 use super::outputs::{self, Inputs};
 use super::picture_args::StatsFormat;
 use super::progress::Watch;
-use super::{dry_run, interrupt, opened, picture, talk, threads};
+use super::{dry_run, ids, interrupt, opened, picture, talk, threads};
 use anyhow::{Context, anyhow};
 use base::film::SAMPLES;
 use base::progress::Control;
@@ -72,7 +72,11 @@ pub fn still(job: &RenderJob, opened: &Opened, span: RunSpan, control: &Control)
     showing.rendered(&film.color);
     showing.last(&film);
     let exposed = files.png.as_ref().map(|(path, tone)| (path.as_path(), tone.look(film.shown())));
-    let written = stats.time(Stage::Write, || picture::write(files.exr.as_deref(), exposed, film))?;
+    let written =
+        stats.time(Stage::Write, || picture::write(files.exr.as_deref(), exposed, film, job.forms))?;
+    if let Some(exr) = job.files.exr.as_deref().filter(|_| complete && job.files.is_named()) {
+        ids::write_for(&job.goal, &exr.with_extension("ids.json"), &opened.session.world.scene)?;
+    }
     job.files.deliver(&written.said(job.run.elapsed()), &written.files)?;
     say(&measured);
     if complete {

@@ -5,30 +5,37 @@
 
 use super::method_args;
 use clap::error::ErrorKind;
-use clap::{Arg, ArgAction, Command};
+use clap::parser::ValueSource;
+use clap::{Arg, ArgAction, ArgMatches, Command};
 use std::ffi::{OsStr, OsString};
+use toml::{Table, Value};
 
 /// Settings besides those of the paper and of tuning, by the names of their fields.
-const OTHERS: [&str; 12] = [
+const OTHERS: [&str; 17] = [
     "aov_mode",
+    "aperture",
     "denoise_quality",
+    "depth_png",
     "every",
+    "focus",
     "format",
+    "hide",
     "idle_frames",
     "inspect",
     "max_copied",
     "memory_limit",
     "q_scale",
+    "show",
     "up",
     "verify_against",
     "verify_samples",
 ];
 
 /// Settings that are on or off, and off by default.
-const FLAGS: [&str; 2] = ["keep_noisy", "no_reprojection"];
+const FLAGS: [&str; 4] = ["clay", "half", "keep_noisy", "no_reprojection"];
 
 /// Commands with settings.
-const COMMANDS: [&str; 4] = ["render", "walk", "views", "info"];
+const COMMANDS: [&str; 5] = ["render", "walk", "views", "dataset", "info"];
 
 /// Returns the key of the setting that an argument is; `None` for an option.
 fn key(arg: &Arg) -> Option<&str> {
@@ -76,6 +83,22 @@ pub fn word(name: &str) -> String {
         true => format!("--set {name}"),
         false => format!("--{name}"),
     }
+}
+
+/// Returns the options of a command on the command line, besides those with the ids `own`, as a job file has them.
+pub fn typed(command: &Command, matches: &ArgMatches, own: &[&str]) -> Table {
+    let is_typed = |arg: &&Arg| {
+        let id = arg.get_id().as_str();
+        !own.contains(&id) && matches.value_source(id) == Some(ValueSource::CommandLine)
+    };
+    let option = |arg: &Arg| {
+        let long = key(arg).or(arg.get_long())?;
+        let values = matches.get_raw(arg.get_id().as_str()).filter(|_| arg.get_action().takes_values());
+        let words = values.map(|values| values.map(|value| value.to_string_lossy().into_owned()));
+        let value = words.map_or(Value::Boolean(true), |words| words.collect::<Vec<String>>().into());
+        Some((long.to_owned(), value))
+    };
+    command.get_arguments().filter(is_typed).filter_map(option).collect()
 }
 
 /// Joins the words of settings.

@@ -25,11 +25,19 @@ pub struct ViewFiles {
 }
 
 impl Shots {
-    /// Returns the OpenEXR file of an image.
-    pub fn exr(&self, number: usize) -> PathBuf {
+    /// Returns the main file of an image: OpenEXR, or a PNG file alone.
+    pub fn file(&self, number: usize) -> PathBuf {
         match self {
             Shots::Path(names) => names.of(number),
             Shots::Views(views) => views.exr(number),
+        }
+    }
+
+    /// Returns the file of the table of ids.
+    pub fn ids(&self) -> PathBuf {
+        match self {
+            Shots::Path(names) => names.pattern().with_extension("ids.json"),
+            Shots::Views(views) => views.folder.join("ids.json"),
         }
     }
 

@@ -68,6 +68,19 @@ impl StillFiles {
         Ok(StillFiles { exr: Some(output.clone()), png, piped: None })
     }
 
+    /// Returns the files of a frame named `main`: a PNG file alone if it is one, otherwise an OpenEXR file, and a PNG
+    /// file if there is a `tone`.
+    pub fn of_frame(main: PathBuf, tone: Option<Tone>) -> StillFiles {
+        let is_png = main.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png"));
+        let png = tone.map(|tone| (main.with_extension("png"), tone));
+        StillFiles { exr: (!is_png).then_some(main), png, piped: None }
+    }
+
+    /// Returns true if the files have names of their own, and do not go to standard output.
+    pub fn is_named(&self) -> bool {
+        self.piped.is_none()
+    }
+
     /// Returns the file that stands for all in messages.
     pub fn main(&self) -> &Path {
         let png = self.png.as_ref().map(|(path, _)| path.as_path());

@@ -2,7 +2,7 @@
 
 use super::exit::Failure;
 use super::live::Previews;
-use super::outputs::{OutputCheck, check_new, check_output, check_outputs};
+use super::outputs::{OutputCheck, check_output};
 use super::shots::{Shots, ViewFiles};
 use super::views_args::ViewsArgs;
 use super::walk_job::{self, WalkJob};
@@ -34,7 +34,7 @@ pub fn job(args: ViewsArgs) -> Result<WalkJob, Failure> {
     };
     let defaults = RetentionLimits::default();
     let check = OutputCheck { may_stay: args.picture.resume, is_dry: args.picture.dry_run };
-    let no_overwrite = args.picture.no_overwrite;
+    let (no_overwrite, forms) = (args.picture.no_overwrite, args.picture.forms());
     let job = WalkJob {
         reading: args.picture.reading.options_at(&args.scene, None),
         scene: args.scene,
@@ -53,6 +53,9 @@ pub fn job(args: ViewsArgs) -> Result<WalkJob, Failure> {
             reprojects: false,
             q_scale: None,
         },
+        forms,
+        movie: None,
+        jobs: args.jobs.get(),
         threads: threads::count(args.picture.threads),
         stats: args.stats,
         progress: args.picture.progress,
@@ -93,18 +96,15 @@ fn check_files(job: &WalkJob, check: OutputCheck, no_overwrite: bool) -> Result<
     let Some(views) = job.shots.views() else { return Ok(()) };
     check_output(&views.folder.join("view.exr"), check)?;
     for number in views.numbers(job.frames.as_ref()) {
-        let (exr, png) = job.files(number);
-        if let Some(folder) = exr.parent().filter(|folder| !folder.exists()) {
+        let files = job.files(number);
+        if let Some(folder) = files.main().parent().filter(|folder| !folder.exists()) {
             if check.is_dry {
                 continue;
             }
             let made = fs::create_dir_all(folder);
             made.with_context(|| format!("cannot make {}", folder.display())).map_err(Failure::output)?;
         }
-        check_outputs(Some(&exr), png.as_deref(), check)?;
-        if no_overwrite {
-            check_new([&exr].into_iter().chain(&png).map(PathBuf::as_path))?;
-        }
+        files.check(check, no_overwrite)?;
     }
     Ok(())
 }

@@ -31,6 +31,11 @@ pub struct ViewsArgs {
     /// and the images stay the same. In a job file, each chunk is an entry [default: one chunk]
     #[arg(long, value_name = "N", value_parser = counted)]
     pub chunk: Option<NonZeroUsize>,
+    /// Number of chunks that are rendered at a time, each with an equal part of the threads. All images stay the same.
+    /// A view by paths is a chunk of its own. Many small images take less time so
+    #[arg(short, long, value_name = "N", value_parser = counted, default_value = "1",
+        conflicts_with_all = ["preview", "tev"])]
+    pub jobs: NonZeroUsize,
     /// Memory limit of the records kept between views, like 512M or 2G. Records unused for the longest time are
     /// removed first [default: 1G]
     #[arg(long, value_name = "BYTES", allow_hyphen_values = true)]

@@ -6,11 +6,13 @@ use super::exit::Failure;
 use super::live::{Showing, ShownFrame};
 use super::outputs::{self, Inputs};
 use super::progress::Watch;
+use super::side_by_side::SideBySide;
+use super::values::ProgressMode;
 use super::walk_job::{FIRST_POSE, PlannedChunk, WalkJob};
 use super::walk_report::WalkReport;
-use super::{dry_run, interrupt, opened, picture, talk, threads};
+use super::{dry_run, ids, interrupt, opened, picture, talk, threads};
 use anyhow::{Context, anyhow};
-use base::film::{Film, Image, Look};
+use base::film::{Film, Image, Look, Tone};
 use base::progress::Control;
 use base::stats::{Stage, Stopwatch};
 use readers::LoadOptions;
@@ -22,10 +24,9 @@ use serde_json::json;
 use std::collections::BTreeSet;
 use std::fs;
 use std::mem;
-use std::path::PathBuf;
-use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Instant;
-use world::view::View;
 
 /// Runs the command.
 pub fn run(args: WalkArgs) -> Result<(), Failure> {
@@ -59,13 +60,10 @@ pub fn walk(mut job: WalkJob, opened: &Opened, span: RunSpan, control: &Control)
     let chunks = job.plan(session, *moves)?;
     let inputs = Inputs::of_session(session);
     for number in chunks.iter().flat_map(|chunk| &chunk.frames) {
-        let (exr, png) = job.files(*number);
-        let files = [&exr].into_iter().chain(&png).map(PathBuf::as_path);
-        inputs.check_apart(files.chain(job.previews.file()))?;
+        inputs.check_apart(job.files(*number).paths().chain(job.previews.file()))?;
     }
     for number in chunks.iter().flat_map(PlannedChunk::unwritten) {
-        let (exr, png) = job.files(number);
-        outputs::check_unprotected([&exr].into_iter().chain(&png).map(PathBuf::as_path))?;
+        outputs::check_unprotected(job.files(number).paths())?;
     }
     if job.dry_run {
         return dry_run::walk(job, session, &chunks, listed);
@@ -84,17 +82,52 @@ pub fn walk(mut job: WalkJob, opened: &Opened, span: RunSpan, control: &Control)
         .filter(|_| shares_records)
         .map(|listed| listed.outlook(session, job.chunk_size(*moves), control));
     let outlook = outlook.as_ref();
-    let progress = Watch::new(job.progress, RunProgress::new(count, Stages::new(&job.goal), span));
-    let (warnings, said) = (warnings.len(), BTreeSet::new());
-    let showing = job.previews.begin(&job.shots.name());
-    let (shared, look) = (Shared { listed, outlook }, None);
-    let mut frames =
-        Frames { job, session, shared, warnings, control, look, report, progress, showing, said };
-    let ended = chunks.into_iter().try_for_each(|chunk| match moves {
-        true => frames.posed(chunk, opened),
-        false => frames.chunk(chunk, session),
+    let first = chunks.iter().flat_map(PlannedChunk::unwritten).next();
+    let look = first.map(|first| look(job, session, listed, first, control)).transpose()?.flatten();
+    if first.is_some_and(|first| job.files(first).exr.is_some()) {
+        ids::write_for(&job.goal, &job.shots.ids(), &session.world.scene)?;
+    }
+    let walking = Walking {
+        job,
+        shared: Shared { listed, outlook },
+        warnings: warnings.len(),
+        look,
+        count,
+        begun: AtomicUsize::new(0),
+        report: Mutex::new(report),
+        said: Mutex::default(),
+    };
+    walking.render(chunks, opened, span, control)?;
+    let report = walking.report.into_inner().unwrap_or_else(PoisonError::into_inner);
+    report.sum_up()?;
+    match &job.movie {
+        Some(movie) => movie.write(job.numbers(session)?.into_iter().map(|number| job.shots.file(number))),
+        None => Ok(()),
+    }
+}
+
+/// Returns the look of all PNG files; `None` if there are none, or if each has a look of its own.
+///
+/// The exposure depends on frames of the whole path or list, so that every part has the same. `first` is the frame that
+/// needs it first.
+fn look(
+    job: &WalkJob,
+    session: &Session,
+    listed: Option<&ListedViews>,
+    first: usize,
+    control: &Control,
+) -> Result<Option<Look>, Failure> {
+    let exposes_each = job.shots.views().is_some_and(|views| views.exposes_each);
+    let Some(tone) = job.tone.filter(|_| !exposes_each) else { return Ok(None) };
+    let film = job.view(first, session, listed)?.window.film;
+    let factor = tone.exposure.factor(|| match listed {
+        None => exposure::over_path(session, film, control).exp2(),
+        Some(listed) => exposure::over_views(session, listed.all(), control).exp2(),
     });
-    ended.and(frames.report.sum_up())
+    match control.is_cancelled() {
+        true => Err(interrupted(&job.shots.label(first))),
+        false => Ok(Some(Look { factor, curve: tone.curve, automatic: None })),
+    }
 }
 
 /// Results for all views of a list, which come before the first view. The frames of a path have none.
@@ -116,22 +149,29 @@ impl<'a> Shared<'a> {
     }
 }
 
-/// A running walk.
-struct Frames<'a> {
+/// A running walk, of which workers render frames.
+struct Walking<'a> {
     job: &'a WalkJob,
     shared: Shared<'a>,
-    /// Scene of the exposure: of all frames, or of the first one if the model moves.
-    session: &'a Session,
     /// Number of warnings of the reader.
     warnings: usize,
-    control: &'a Control,
-    /// Look of the PNG files, once it is known.
+    /// Look of the PNG files, if all have one.
     look: Option<Look>,
-    report: WalkReport,
+    /// Number of frames to render.
+    count: usize,
+    /// Number of frames that have begun.
+    begun: AtomicUsize,
+    report: Mutex<WalkReport>,
+    /// Remarks that were printed.
+    said: Mutex<BTreeSet<String>>,
+}
+
+/// A worker, which renders one frame after the other.
+struct Frames<'a> {
+    walking: &'a Walking<'a>,
+    control: &'a Control,
     progress: Watch,
     showing: Showing<'a>,
-    /// Remarks that were printed.
-    said: BTreeSet<String>,
 }
 
 impl Frames<'_> {
@@ -141,16 +181,17 @@ impl Frames<'_> {
             return self.chunk(chunk, &first.session);
         };
         if self.control.is_cancelled() {
-            return Err(interrupted(&self.job.shots.label(number)));
+            return Err(interrupted(&self.walking.job.shots.label(number)));
         }
-        let reading = LoadOptions { frame: Some(number), ..self.job.reading.clone() };
-        let session = opened::posed(&self.job.scene, &reading, first)?;
+        let job = self.walking.job;
+        let reading = LoadOptions { frame: Some(number), ..job.reading.clone() };
+        let session = opened::posed(&job.scene, &reading, first)?;
         self.chunk(chunk, &session)
     }
 
     /// Renders the missing frames of a chunk, and those frames whose records they need.
     fn chunk(&mut self, mut chunk: PlannedChunk, session: &Session) -> Result<(), Failure> {
-        let (job, shared) = (self.job, self.shared);
+        let (job, shared) = (self.walking.job, self.walking.shared);
         let records = job.records_file(&chunk);
         let saved = chunk.saved.take();
         let behind = saved.as_ref().map_or(0, |(index, _)| index + 1);
@@ -193,26 +234,27 @@ impl Frames<'_> {
         chunk: &PlannedChunk,
         index: usize,
     ) -> Result<(), Failure> {
-        let Frames { job, control, .. } = *self;
+        let Frames { walking, control, .. } = *self;
+        let job = walking.job;
         let (number, is_there) = (chunk.frames[index], chunk.done[index]);
         let label = job.shots.label(number);
         if control.is_cancelled() {
             return Err(interrupted(&label));
         }
         let watch = Stopwatch::start();
-        let [place, count] = self.progress.frames();
+        let (place, count) = (walking.begun.fetch_add(1, Ordering::Relaxed), walking.count);
         talk::event(
             "frame",
             || json!({ "frame": number, "state": "start", "index": place, "count": count, "is_there": is_there }),
         );
-        let view = job.view(number, session, self.shared.listed)?;
+        let view = job.view(number, session, walking.shared.listed)?;
         let work = || walk.frame(&view, control);
         let is_done =
             |frame: &Result<RenderedFrame, FrameError>| frame.as_ref().is_ok_and(|frame| frame.complete);
         let shown = ShownFrame {
             size: [view.window.width, view.window.height],
-            look: self.look,
-            beside: job.files(number).0.with_extension("preview.png"),
+            look: walking.look,
+            beside: job.shots.file(number).with_extension("preview.png"),
         };
         let showing = &mut self.showing;
         let work = || showing.frame(&shown, control, work);
@@ -226,13 +268,14 @@ impl Frames<'_> {
         }
         self.showing.rendered(&frame.film.color);
         let black = frame.black_warning().map(str::to_owned);
+        let report = || walking.report.lock().unwrap_or_else(PoisonError::into_inner);
         if is_there {
-            self.report.repeat();
+            report().repeat();
         } else {
-            self.say_once(&frame, &label);
-            self.write(&mut frame, number, &chunk.keys[index], &view, &watch)?;
+            walking.say_once(&frame, &label);
+            walking.write(&mut frame, number, &chunk.keys[index], &watch)?;
             frame.stats.add_time(Stage::Total, watch.elapsed());
-            self.report.add(number, &frame)?;
+            report().add(number, &frame)?;
         }
         let seconds = watch.elapsed().wall_seconds;
         talk::event("frame", || json!({ "frame": number, "state": "end", "seconds": seconds }));
@@ -241,66 +284,77 @@ impl Frames<'_> {
             None => Ok(()),
         }
     }
+}
+
+impl Walking<'_> {
+    /// Renders chunks one after the other, or some at a time. They take the part `span` of the run.
+    fn render(
+        &self,
+        chunks: Vec<PlannedChunk>,
+        opened: &Opened,
+        span: RunSpan,
+        control: &Control,
+    ) -> Result<(), Failure> {
+        let job = self.job;
+        let run = |chunk: PlannedChunk, frames: &mut Frames| match opened.moves {
+            true => frames.posed(chunk, opened),
+            false => frames.chunk(chunk, &opened.session),
+        };
+        if job.jobs > 1 && chunks.len() > 1 {
+            let jobs = job.jobs.min(chunks.len());
+            return SideBySide { jobs, control, progress: job.progress, span }
+                .each(chunks, |chunk, control| {
+                    run(chunk, &mut self.worker(ProgressMode::None, span, control))
+                });
+        }
+        let mut frames = self.worker(job.progress, span, control);
+        chunks.into_iter().try_for_each(|chunk| run(chunk, &mut frames))
+    }
+
+    /// Returns a worker that reports its progress.
+    fn worker<'a>(&'a self, mode: ProgressMode, span: RunSpan, control: &'a Control) -> Frames<'a> {
+        let job = self.job;
+        let progress = Watch::new(mode, RunProgress::new(self.count, Stages::new(&job.goal), span));
+        Frames { walking: self, control, progress, showing: job.previews.begin(&job.shots.name()) }
+    }
 
     /// Writes a frame, on which `watch` has run since its start, and reports its files.
     fn write(
-        &mut self,
+        &self,
         frame: &mut RenderedFrame,
         number: usize,
         key: &str,
-        view: &View,
         watch: &Stopwatch,
     ) -> Result<(), Failure> {
-        let (exr, png) = self.job.files(number);
-        let label = self.job.shots.label(number);
-        let look = self.look(&label, view, &frame.film)?;
+        let job = self.job;
+        let (files, label) = (job.files(number), job.shots.label(number));
         frame.film.metadata.set("frame", number as f64);
-        if let Some(views) = self.job.shots.views() {
+        if let Some(views) = job.shots.views() {
             frame.film.metadata.set("view", views.title(number).as_str());
             frame.facts["view"] = views.title(number).into();
         }
         frame.film.metadata.set("job", key);
         let mut film = mem::replace(&mut frame.film, Film::new(Image::new(0, 0)));
-        if self.job.reproducible {
+        if job.reproducible {
             picture::forget_circumstances(&mut film);
         }
-        let png = png.as_deref().zip(look);
-        let written = frame.stats.time(Stage::Write, || picture::write_exr_last(&exr, png, film))?;
+        let look = |tone: &Tone| self.look.unwrap_or_else(|| tone.look(film.shown()));
+        let png = files.png.as_ref().map(|(path, tone)| (path.as_path(), look(tone)));
+        let (exr, forms) = (files.exr.as_deref(), job.forms);
+        let written = frame.stats.time(Stage::Write, || picture::write(exr, png, film, forms))?;
         frame.facts["scene_warnings"] = self.warnings.into();
-        frame.facts["output"] = exr.to_string_lossy().into();
+        frame.facts["output"] = files.main().to_string_lossy().into();
         frame.facts["png"] = png.map(|(path, _)| path.to_string_lossy()).into();
         talk::wrote(&format!("{label}: {}", written.said(watch.elapsed())), &written.files);
         Ok(())
     }
 
-    /// Returns the look of a PNG file; `None` if there is none.
-    ///
-    /// The exposure depends on frames of the whole path or list, so that every part has the same, unless each view is
-    /// exposed by itself. `label` names the frame that needs it.
-    fn look(&mut self, label: &str, view: &View, film: &Film) -> Result<Option<Look>, Failure> {
-        let Some(tone) = self.job.tone else { return Ok(None) };
-        if self.job.shots.views().is_some_and(|views| views.exposes_each) {
-            return Ok(Some(tone.look(film.shown())));
-        }
-        if self.look.is_some() {
-            return Ok(self.look);
-        }
-        let factor = tone.exposure.factor(|| match self.shared.listed {
-            None => exposure::over_path(self.session, view.window.film, self.control).exp2(),
-            Some(listed) => exposure::over_views(self.session, listed.all(), self.control).exp2(),
-        });
-        if self.control.is_cancelled() {
-            return Err(interrupted(label));
-        }
-        self.look = Some(Look { factor, curve: tone.curve, automatic: None });
-        Ok(self.look)
-    }
-
     /// Prints the remarks of a frame that no earlier frame had.
-    fn say_once(&mut self, frame: &RenderedFrame, label: &str) {
+    fn say_once(&self, frame: &RenderedFrame, label: &str) {
+        let mut said = self.said.lock().unwrap_or_else(PoisonError::into_inner);
         for remark in &frame.remarks {
             let (Remark::Note(text) | Remark::Warning(text)) = remark;
-            if self.said.insert(text.clone()) {
+            if said.insert(text.clone()) {
                 let line = format!("{label}: {text}");
                 match remark {
                     Remark::Note(_) => talk::note(&line),

@@ -4,10 +4,13 @@ use super::args::WalkArgs;
 use super::exit::Failure;
 use super::live::Previews;
 use super::method_args::MethodArgs;
-use super::outputs::{OutputCheck, check_new, check_output, check_outputs};
+use super::movie::Movie;
+use super::outputs::{OutputCheck, check_output};
+use super::picture::Forms;
 use super::picture_args::{PictureArgs, StatsFormat};
 use super::plan_args::{PlanArgs, Quality};
 use super::shots::{Shots, ViewFiles};
+use super::still_files::StillFiles;
 use super::values::{ProgressMode, Resolution};
 use super::{job_key, threads};
 use anyhow::anyhow;
@@ -55,6 +58,12 @@ pub struct WalkJob {
     pub goal: Goal,
     /// Limits of the records that stay between frames.
     pub limits: RetentionLimits,
+    /// Forms of the files.
+    pub forms: Forms,
+    /// Movie of the frames, if there is to be one.
+    pub movie: Option<Movie>,
+    /// Maximum number of chunks that are rendered at a time.
+    pub jobs: usize,
     /// Number of threads.
     pub threads: usize,
     /// Format of the statistics on stdout.
@@ -75,7 +84,11 @@ impl WalkJob {
     /// # Errors
     /// If the arguments are wrong or a file cannot be written.
     pub fn new(args: WalkArgs) -> Result<WalkJob, Failure> {
-        args.picture.reading.check_unplaced("the camera path of the scene", false)?;
+        if args.turntable.is_none() {
+            args.picture.reading.check_unplaced("the camera path of the scene", false)?;
+        }
+        check_exr(&args)?;
+        let movie = args.movie.clone().map(Movie::new).transpose()?;
         let of_records = [
             ("--set memory-limit", args.memory_limit.is_some()),
             ("--set idle-frames", args.idle_frames.is_some()),
@@ -90,7 +103,10 @@ impl WalkJob {
         let no_overwrite = args.picture.no_overwrite;
         let check = OutputCheck { may_stay: args.picture.resume, is_dry: args.picture.dry_run };
         let job = WalkJob {
-            reading: args.picture.reading.options_at(&args.scene, Some(FIRST_POSE)),
+            reading: reading(&args),
+            forms: args.picture.forms(),
+            movie,
+            jobs: 1,
             scene: args.scene,
             frames: args.frames,
             chunk: args.chunk,
@@ -116,21 +132,19 @@ impl WalkJob {
         let listed = job.frames.iter().flat_map(FrameList::iter);
         // Without a list the first frame stands for all.
         for frame in listed.chain(job.frames.is_none().then_some(1)) {
-            let (exr, png) = job.files(frame);
-            check_outputs(Some(&exr), png.as_deref(), check)?;
-            check_output(&exr.with_extension(RECORDS), OutputCheck { may_stay: true, ..check })?;
-            if no_overwrite {
-                check_new([&exr].into_iter().chain(&png).map(PathBuf::as_path))?;
-            }
+            job.files(frame).check(check, no_overwrite)?;
+            let records = job.shots.file(frame).with_extension(RECORDS);
+            check_output(&records, OutputCheck { may_stay: true, ..check })?;
+        }
+        if let Some(movie) = &job.movie {
+            check_output(movie.file(), check)?;
         }
         Ok(job)
     }
 
-    /// Returns the files of a frame: OpenEXR, and PNG if there is to be one.
-    pub fn files(&self, frame: usize) -> (PathBuf, Option<PathBuf>) {
-        let exr = self.shots.exr(frame);
-        let png = self.tone.map(|_| exr.with_extension("png"));
-        (exr, png)
+    /// Returns the files of a frame: OpenEXR, and PNG if there is to be one, or PNG alone.
+    pub fn files(&self, frame: usize) -> StillFiles {
+        StillFiles::of_frame(self.shots.file(frame), self.tone)
     }
 
     /// Places the views of a list in the session's scene; returns `None` for the frames of a path.
@@ -203,7 +217,7 @@ impl WalkJob {
     ///
     /// # Errors
     /// If the scene has no camera path, or a frame lies beyond it.
-    fn numbers(&self, session: &Session) -> Result<Vec<usize>, Failure> {
+    pub fn numbers(&self, session: &Session) -> Result<Vec<usize>, Failure> {
         if let Some(views) = self.shots.views() {
             return Ok(views.numbers(self.frames.as_ref()));
         }
@@ -211,7 +225,7 @@ impl WalkJob {
         let scene = self.scene.display();
         if frames == 0 {
             return Err(Failure::usage(anyhow!(
-                "{scene} has no camera path; add a table [camera.path] to a TOML scene, as in \
+                "{scene} has no camera path; add --turntable 60, a table [camera.path] to a TOML scene, as in \
                  scenes/apartment.toml, or an animation to a glTF file; for a still, use `lightsplat render`"
             )));
         }
@@ -243,12 +257,15 @@ impl WalkJob {
         let key = job_key::job_key(
             session,
             &self.goal,
-            json!([
-                format!("{:?}", self.film(session)),
-                self.tone.map(|tone| tone.to_string()),
-                format!("{:?}", self.limits),
-                self.reproducible,
-            ]),
+            job_key::files(
+                json!([
+                    format!("{:?}", self.film(session)),
+                    self.tone.map(|tone| tone.to_string()),
+                    format!("{:?}", self.limits),
+                    self.reproducible,
+                ]),
+                self.forms,
+            ),
         );
         let views = self.shots.views();
         let size = self.chunk_size(moves);
@@ -263,8 +280,10 @@ impl WalkJob {
         let FrameChunk { frames, ends } = chunk;
         let keys: Vec<String> = (0..frames.len()).map(|i| job_key::of_frame(key, &frames[..=i])).collect();
         let is_done = |(number, key): (&usize, &String)| {
-            let (exr, png) = self.files(*number);
-            self.resume && job_key::is_done(&exr, png.as_deref(), Some(*number), key)
+            let files = self.files(*number);
+            let png = files.png.as_ref().map(|(path, _)| path.as_path());
+            let is_done = |exr: &PathBuf| job_key::is_done(exr, png, Some(*number), key);
+            self.resume && files.exr.as_ref().is_some_and(is_done)
         };
         let done: Vec<bool> = frames.iter().zip(&keys).map(is_done).collect();
         let mut chunk = PlannedChunk { frames, keys, done, ends, saved: None, runs: Vec::new() };
@@ -279,8 +298,28 @@ impl WalkJob {
     /// Returns the file of the records of a chunk; `None` if no frame can follow.
     pub fn records_file(&self, chunk: &PlannedChunk) -> Option<PathBuf> {
         let first = chunk.frames.first().filter(|_| chunk.frames.len() > 1 || !chunk.ends)?;
-        Some(self.shots.exr(*first).with_extension(RECORDS))
+        Some(self.shots.file(*first).with_extension(RECORDS))
     }
+}
+
+/// Refuses options that need OpenEXR files, if the frames are PNG files alone.
+fn check_exr(args: &WalkArgs) -> Result<(), Failure> {
+    let is_png = args.output.pattern().extension().is_some_and(|e| e.eq_ignore_ascii_case("png"));
+    let given = [("--resume", args.picture.resume), ("--no-png", args.no_png)];
+    match given.into_iter().find(|(_, is_given)| is_png && *is_given) {
+        Some((option, _)) => {
+            Err(Failure::usage(anyhow!("{option} needs OpenEXR files; name them NAME.####.exr with -o")))
+        }
+        None => Ok(()),
+    }
+}
+
+/// Returns the options of the scene reader for a walk.
+pub fn reading(args: &WalkArgs) -> LoadOptions {
+    let options = args.picture.reading.clone();
+    let mut options = options.options_at(&args.scene, args.turntable.is_none().then_some(FIRST_POSE));
+    options.viewpoint.turntable = args.turntable.map(NonZeroUsize::get);
+    options
 }
 
 /// Refuses `options`, of which some are given, for a method without records that stay from image to image.
@@ -309,7 +348,7 @@ pub fn goal(method: &MethodArgs, quality: Option<Quality>, picture: &PictureArgs
         may_choose: method.is_open(),
         plan: PlanGoal::AsSet,
         averaging: picture.averaging(),
-        features: picture.aov.iter().copied().collect(),
+        features: picture.features(),
         denoise: picture.denoise.denoise(),
         denoise_quality: Some(picture.denoise.quality().unwrap_or_default()),
         keep_noisy: picture.denoise.keep_noisy,

@@ -75,6 +75,13 @@ fn what_fails_does_not_stop_the_others_and_the_exit_code_says_so() {
     sandbox.render("alone.exr", &[]).expect(0);
     let color = |name| ExrFile::read(&sandbox.path(name)).unwrap().color().unwrap();
     assert_eq!(color("out/room.exr"), color("alone.exr"));
+    // Entries at a time are equal, too.
+    fs::rename(sandbox.path("out"), sandbox.path("before")).unwrap();
+    fs::create_dir(sandbox.path("out")).unwrap();
+    batch(&sandbox, &["-j", "3", "--threads", "2"]).expect(5);
+    for name in ["room", "crop", "walk.01", "walk.02"] {
+        assert_eq!(color(&format!("out/{name}.exr")), color(&format!("before/{name}.exr")), "{name}");
+    }
 }
 
 #[test]

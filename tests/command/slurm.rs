@@ -27,6 +27,12 @@ echo 1
 /// Runs a script of the farm; returns what it said, and the options that sbatch got.
 #[track_caller]
 fn submit(sandbox: &Sandbox, script: &str, arguments: &[&str]) -> (String, String) {
+    submit_grouped(sandbox, script, arguments, "")
+}
+
+/// Runs a script as [`submit`] does, with so many entries per task.
+#[track_caller]
+fn submit_grouped(sandbox: &Sandbox, script: &str, arguments: &[&str], entries: &str) -> (String, String) {
     let file = format!("{}/farm/slurm/{script}", env!("CARGO_MANIFEST_DIR"));
     let program = sandbox.path("sbatch");
     fs::write(&program, SBATCH).unwrap();
@@ -35,6 +41,7 @@ fn submit(sandbox: &Sandbox, script: &str, arguments: &[&str]) -> (String, Strin
     let mut command = std::process::Command::new("bash");
     command.arg(file).args(arguments).current_dir(sandbox.path("")).env("PATH", path);
     command.env("LIGHTSPLAT", env!("CARGO_BIN_EXE_lightsplat")).env("CPUS_PER_TASK", "3");
+    command.env("ENTRIES_PER_TASK", entries);
     let finished = super::Finished::from(command.output().unwrap()).expect(0);
     let options = fs::read_to_string(sandbox.path("options.txt")).unwrap();
     fs::remove_file(sandbox.path("options.txt")).unwrap();
@@ -53,6 +60,10 @@ fn stills_have_a_task_each() {
     assert_eq!(said, "images: job 1\n");
     assert_eq!(options, "--parsable\n--array=1-2\n--cpus-per-task=3\n");
     assert!(["a.exr", "a.png", "b.exr", "b.png"].iter().all(|name| sandbox.path(name).exists()));
+    let third = format!("{jobs}[[picture]]\nscene = 'room.xml'\noutput = 'c.exr'\n");
+    fs::write(sandbox.path("jobs.toml"), third).unwrap();
+    let (_, options) = submit_grouped(&sandbox, "stills.sh", &["jobs.toml"], "2");
+    assert!(options.contains("--array=1-2") && sandbox.path("c.exr").exists(), "{options}");
 }
 
 #[test]

@@ -195,6 +195,28 @@ fn the_order_of_views_changes_their_noise_and_not_their_mean() {
 }
 
 #[test]
+fn views_at_a_time_have_the_bits_of_views_one_after_the_other() {
+    let sandbox = sandbox();
+    let few = ["--set", "vpls=2000"];
+    for more in [
+        &["--method", "path"][..],
+        &[&few[..], &["--reproducible"]].concat(),
+        &[&few[..], &["--chunk", "2"]].concat(),
+    ] {
+        let run = |jobs: &str| {
+            let base = ["views", "path.toml", "cameras.json", "-o", "out", "--no-denoise", "--spp", "4"];
+            let done = sandbox.run(&[&base, &["--threads", "2", "-j", jobs][..], more].concat()).expect(0);
+            assert!(done.stderr.contains("5 views rendered"), "{}", done.stderr);
+            let images =
+                NAMES.map(|name| (colour(&sandbox, name), read(&sandbox.path(&format!("out/{name}.png")))));
+            clear(&sandbox);
+            images
+        };
+        assert!(run("1") == run("2"), "{more:?}");
+    }
+}
+
+#[test]
 fn views_do_not_depend_on_threads() {
     let sandbox = sandbox();
     let colours = |threads| {
