@@ -1,7 +1,7 @@
 //! `lightsplat dataset`: renders many models from random cameras in random light.
 //!
-//! The command writes a list of cameras per model and a job file, and renders the entries of the job file as a batch. An
-//! entry has the views of a model in one light.
+//! The command writes a list of cameras per model and a job file, and renders the entries of the job file as a batch.
+//! An entry has the views of a model in one light.
 
 use super::batch::{BatchRun, Manner};
 use super::dataset_args::DatasetArgs;
@@ -106,7 +106,7 @@ fn write(path: &Path, text: &str) -> Result<(), Failure> {
     written.with_context(|| format!("cannot write {}", path.display())).map_err(Failure::output)
 }
 
-/// What all models of a data set have in common.
+/// Choices for all models of a data set.
 struct Plan<'a> {
     args: &'a DatasetArgs,
     reading: LoadOptions,
@@ -165,22 +165,18 @@ impl Plan<'_> {
         let [width, height] = self.size.map(f64::from);
         // The narrower side of the image holds the whole model.
         let narrow = (0.5 * fov).tan() * (height / width).min(1.0);
-        let frame = |(number, light): (usize, &usize)| {
+        let frame = |number: usize| {
             let mut sampler = Sampler::new(seed, number as u32);
             let (around, along) = (sampler.next_2d(), sampler.next_1d());
             let pose = shell.pose(around, along, [self.args.elevations, self.args.distances], narrow);
-            let mut frame = json!({ "file_path": format!("{number:04}.png"), "transform_matrix": pose });
-            if let Some(light) = self.lights.get(*light) {
-                frame["light"] = light.as_str().into();
-            }
-            frame
+            json!({ "file_path": format!("{number:04}.png"), "transform_matrix": pose })
         };
         let focal = 0.5 * width / (0.5 * fov).tan();
         json!({
             "camera_angle_x": fov,
             "fl_x": focal, "fl_y": focal, "cx": 0.5 * width, "cy": 0.5 * height,
             "w": self.size[0], "h": self.size[1],
-            "frames": (1..).zip(&model.lights).map(frame).collect::<Vec<Value>>(),
+            "frames": (1..=model.lights.len()).map(frame).collect::<Vec<Value>>(),
         })
     }
 

@@ -43,7 +43,7 @@ pub struct DatasetArgs {
     /// models, views and lights, and jobs.toml is the job file for lightsplat batch
     #[arg(short, long, value_name = "FOLDER")]
     pub output: PathBuf,
-    /// Number of random cameras per model. They stand around the model and look at its middle. --seed chooses them
+    /// Number of random cameras per model. All look at the middle of the model. --seed chooses them
     #[arg(long, value_name = "N", value_parser = counted, default_value = "100", conflicts_with = "cameras")]
     pub views: NonZeroUsize,
     /// List of cameras for all models instead of random ones, as for lightsplat views

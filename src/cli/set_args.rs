@@ -95,7 +95,11 @@ pub fn typed(command: &Command, matches: &ArgMatches, own: &[&str]) -> Table {
         let long = key(arg).or(arg.get_long())?;
         let values = matches.get_raw(arg.get_id().as_str()).filter(|_| arg.get_action().takes_values());
         let words = values.map(|values| values.map(|value| value.to_string_lossy().into_owned()));
-        let value = words.map_or(Value::Boolean(true), |words| words.collect::<Vec<String>>().into());
+        let value = match words.map(Iterator::collect::<Vec<String>>) {
+            None => Value::Boolean(true),
+            Some(mut words) if words.len() == 1 => words.swap_remove(0).into(),
+            Some(words) => words.into(),
+        };
         Some((long.to_owned(), value))
     };
     command.get_arguments().filter(is_typed).filter_map(option).collect()

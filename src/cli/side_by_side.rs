@@ -1,7 +1,7 @@
 //! Images side by side: workers take one after the other, each with an equal part of the threads.
 //!
-//! Small images keep one thread busy all the time and several threads less, so this takes less time than one image after
-//! the other on all threads. Images do not depend on the number of threads, nor on the images beside them.
+//! Small images keep one thread busy all the time and several threads less. So this takes less time than one image
+//! after the other on all threads. Images do not depend on the number of threads, nor on the images beside them.
 
 use super::course::{RunProgress, RunSpan, Stages};
 use super::exit::Failure;
