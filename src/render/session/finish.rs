@@ -139,7 +139,8 @@ impl<'a> Finish<'a> {
             means.retain(|layer| layer.name != feature.name());
         }
         let masks = Feature::ALL.into_iter().filter(|feature| self.features.contains(*feature));
-        let of_masks = |masks: Masks| masks.layers(self.world, self.view, method.seed(), self.control);
+        // Images of other seeds have the same masks, so that they can be merged.
+        let of_masks = |masks: Masks| masks.layers(self.world, self.view, 0, self.control);
         let masks: Vec<Layer> = masks.filter_map(Feature::masks).flat_map(of_masks).collect();
         if self.averaging == Averaging::Mean || self.features.is_empty() {
             means.extend(masks);
