@@ -44,6 +44,12 @@ struct Model {
 pub fn run(args: DatasetArgs) -> Result<(), Failure> {
     talk::start(args.picture.progress, args.picture.loudness(), "dataset");
     args.picture.reading.check_unplaced("random cameras", args.cameras.is_some())?;
+    if args.picture.dry_run {
+        return Err(Failure::usage(anyhow!(
+            "--dry-run writes nothing, and a data set needs its lists of cameras; use --plan, and lightsplat batch \
+             jobs.toml --dry-run"
+        )));
+    }
     fs::create_dir_all(&args.output)
         .with_context(|| format!("cannot make {}", args.output.display()))
         .map_err(Failure::output)?;
@@ -70,8 +76,7 @@ pub fn run(args: DatasetArgs) -> Result<(), Failure> {
         false => {
             let more: &[&str] = if args.picture.resume { &["--resume"] } else { &[] };
             let jobs_at_once = args.jobs.map_or(threads, |jobs| jobs.get());
-            let manner =
-                Manner { jobs: jobs_at_once, dry_run: args.picture.dry_run, progress: args.picture.progress };
+            let manner = Manner { jobs: jobs_at_once, dry_run: false, progress: args.picture.progress };
             BatchRun::new(manner)?.run(batch_file::read(&jobs, more)?, threads)
         }
     };

@@ -307,6 +307,12 @@ impl Walking<'_> {
                     run(chunk, &mut self.worker(ProgressMode::None, span, control))
                 });
         }
+        if job.jobs > 1 && self.count > 1 {
+            let noun = job.shots.noun();
+            talk::note(&format!(
+                "-j has no effect: {noun}s of one chunk share records, one after the other; add --chunk N"
+            ));
+        }
         let mut frames = self.worker(job.progress, span, control);
         chunks.into_iter().try_for_each(|chunk| run(chunk, &mut frames))
     }

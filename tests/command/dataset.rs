@@ -75,5 +75,7 @@ fn cameras_depend_on_the_seed_and_the_model_alone() {
     let base = ["dataset", "chair.obj", "-o", "alone", "--views", "4", "--plan", "--size", "16"];
     sandbox.run(&base).expect(0);
     assert_eq!(json(&sandbox, "alone/chair/transforms.json"), first);
-    assert!(dataset(&sandbox, &["--look-from", "1,2,3"]).expect(2).stderr.contains("--look-from"));
+    for option in [&["--look-from", "1,2,3"][..], &["--dry-run"]] {
+        assert!(dataset(&sandbox, option).expect(2).stderr.contains(option[0]), "{option:?}");
+    }
 }
