@@ -14,7 +14,7 @@ use embree::leave;
 use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM, SIGUSR1, SIGXFSZ};
 use signal_hook::flag;
 use signal_hook::iterator::Signals;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Arc, OnceLock};
 use std::{fs, io, thread};
 
@@ -23,6 +23,9 @@ const ENDING: [i32; 3] = [SIGHUP, SIGINT, SIGTERM];
 
 /// True while a scene is being read.
 static IS_OPENING: AtomicBool = AtomicBool::new(false);
+
+/// Number of works that may read scenes beside images that they render.
+static SIDE_BY_SIDE: AtomicUsize = AtomicUsize::new(0);
 
 /// True if SIGUSR1 asks for a preview, until the request is taken.
 static WANTS_PREVIEW: OnceLock<Arc<AtomicBool>> = OnceLock::new();
@@ -41,6 +44,14 @@ pub fn while_opening<R>(work: impl FnOnce() -> R) -> R {
     IS_OPENING.store(true, Ordering::SeqCst);
     let _opening = Opening;
     work()
+}
+
+/// Runs `work`, which may read scenes beside images that it renders. The images finish up after a signal.
+pub fn while_side_by_side<R>(work: impl FnOnce() -> R) -> R {
+    SIDE_BY_SIDE.fetch_add(1, Ordering::SeqCst);
+    let result = work();
+    SIDE_BY_SIDE.fetch_sub(1, Ordering::SeqCst);
+    result
 }
 
 /// Returns true if a signal has asked for a preview since the last call.
@@ -82,7 +93,7 @@ fn cancel(control: &Control) {
         end(exit::ABORTED);
     }
     control.cancel();
-    if IS_OPENING.load(Ordering::SeqCst) {
+    if IS_OPENING.load(Ordering::SeqCst) && SIDE_BY_SIDE.load(Ordering::SeqCst) == 0 {
         talk::error(&Failure::interrupted(anyhow!(
             "interrupted while reading the scene; nothing is written"
         )));

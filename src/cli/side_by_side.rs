@@ -6,8 +6,8 @@
 use super::course::{RunProgress, RunSpan, Stages};
 use super::exit::Failure;
 use super::progress::Watch;
-use super::threads;
 use super::values::ProgressMode;
+use super::{interrupt, threads};
 use base::progress::Control;
 use base::stats::Stage;
 use std::sync::{Mutex, PoisonError};
@@ -51,13 +51,16 @@ impl SideBySide<'_> {
                 self.control.advance(1);
             }
         };
-        let all = || {
-            self.control.begin(Stage::Render, count);
+        let spawn = || {
             thread::scope(|scope| {
                 for pool in &pools {
                     scope.spawn(move || pool.install(worker));
                 }
             });
+        };
+        let all = || {
+            self.control.begin(Stage::Render, count);
+            interrupt::while_side_by_side(spawn);
         };
         Watch::new(self.progress, RunProgress::new(1, Stages::default(), self.span)).frame(
             None,
