@@ -56,7 +56,7 @@ pub struct RenderJob {
 }
 
 /// Warns of layers that a PNG alone cannot hold; an error with `--strict`.
-fn say_left_out(picture: &PictureArgs) -> Result<(), Failure> {
+pub fn say_left_out(picture: &PictureArgs) -> Result<(), Failure> {
     let names: Vec<&str> = picture.aov.iter().map(|feature| feature.name()).collect();
     if names.is_empty() {
         return Ok(());

@@ -12,7 +12,7 @@ use super::plan_args::{PlanArgs, Quality};
 use super::shots::{Shots, ViewFiles};
 use super::still_files::StillFiles;
 use super::values::{ProgressMode, Resolution};
-use super::{job_key, threads};
+use super::{job, job_key, threads};
 use anyhow::anyhow;
 use base::film::Tone;
 use base::progress::Control;
@@ -302,7 +302,7 @@ impl WalkJob {
     }
 }
 
-/// Refuses options that need OpenEXR files, if the frames are PNG files alone.
+/// Refuses options that need OpenEXR files, if the frames are PNG files alone, and warns of layers.
 fn check_exr(args: &WalkArgs) -> Result<(), Failure> {
     let is_png = args.output.pattern().extension().is_some_and(|e| e.eq_ignore_ascii_case("png"));
     let given = [("--resume", args.picture.resume), ("--no-png", args.no_png)];
@@ -310,6 +310,7 @@ fn check_exr(args: &WalkArgs) -> Result<(), Failure> {
         Some((option, _)) => {
             Err(Failure::usage(anyhow!("{option} needs OpenEXR files; name them NAME.####.exr with -o")))
         }
+        None if is_png => job::say_left_out(&args.picture),
         None => Ok(()),
     }
 }

@@ -73,7 +73,7 @@ fn what_fails_does_not_stop_the_others_and_the_exit_code_says_so() {
     assert_eq!((crop.offset, crop.width), ([4, 2], 8));
     // `render` gives an equal image.
     sandbox.render("alone.exr", &[]).expect(0);
-    let color = |name| ExrFile::read(&sandbox.path(name)).unwrap().color().unwrap();
+    let color = |name: &str| ExrFile::read(&sandbox.path(name)).unwrap().color().unwrap();
     assert_eq!(color("out/room.exr"), color("alone.exr"));
     // Entries at a time are equal, too.
     fs::rename(sandbox.path("out"), sandbox.path("before")).unwrap();

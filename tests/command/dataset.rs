@@ -10,7 +10,7 @@ pub(super) const OBJ: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2
 fn sandbox() -> Sandbox {
     let sandbox = Sandbox::with("chair.obj", OBJ);
     fs::create_dir(sandbox.path("more")).unwrap();
-    fs::write(sandbox.path("more/Chair.obj"), OBJ.replace('1', "2")).unwrap();
+    fs::write(sandbox.path("more/Chair.obj"), OBJ.replace("v 1", "v 2")).unwrap();
     fs::write(sandbox.path("broken.glb"), "no model").unwrap();
     sandbox
 }

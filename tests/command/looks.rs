@@ -21,7 +21,8 @@ fn turn(sandbox: &Sandbox, more: &[&str]) -> Finished {
 #[test]
 fn turntables_may_be_png_files_alone() {
     let sandbox = sandbox();
-    turn(&sandbox, &["-o", "f/t.#.png", "--elevation", "10"]).expect(0);
+    let stderr = turn(&sandbox, &["-o", "f/t.#.png", "--elevation", "10", "--aov", "depth"]).expect(0).stderr;
+    assert!(stderr.contains("--aov depth is not written"), "{stderr}");
     let mut files: Vec<_> =
         fs::read_dir(sandbox.path("f")).unwrap().map(|file| file.unwrap().file_name()).collect();
     files.sort();
