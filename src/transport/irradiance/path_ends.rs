@@ -5,8 +5,8 @@
 //!
 //! Paper: Jensen, *Global Illumination using Photon Maps*, 1996, section 5.
 //! Deviations: paths end behind at most half of the edges that they may have, and photons take three quarters. So a few
-//! paths of the last quarter count that are too long. If paths may have few edges, they go on. So they do where there is
-//! no photon.
+//! paths of the last quarter count that are too long. If paths may have few edges, they go on. So they do where there
+//! is no photon.
 
 use super::{IrradianceMap, PhotonMap};
 use crate::emission::PhotonSettings;

@@ -209,7 +209,7 @@ impl Batch {
         let Seen16 { wo, normal } = packet.seen(surfaces);
         let mut bsdfs = world.bsdfs(surfaces, wo);
         followed =
-            packet.end_by_photons(surfaces, &mut bsdfs, (followed, step.depth), policy, &mut self.radiance);
+            packet.end_by_photons(surfaces, &mut bsdfs, (followed, edge.depth), policy, &mut self.radiance);
         if followed == 0 {
             return;
         }

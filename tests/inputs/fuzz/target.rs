@@ -203,6 +203,7 @@ pub fn render(session: &Session, random: &mut Random) {
         let is_finite = match &layer.pixels {
             Pixels::Color(image) | Pixels::Vector(image) => image.pixels.iter().all(|p| p.is_finite()),
             Pixels::Scalar(image) => image.pixels.iter().all(|p| p.is_finite()),
+            Pixels::Ranks(image) => image.pixels.iter().flatten().all(|share| share.is_finite()),
             Pixels::Id(_) => true,
         };
         assert!(is_finite, "{name}: layer {}", layer.name);
