@@ -9,16 +9,14 @@ use super::exit::{self, Failure};
 use super::reading_args::given_light;
 use super::shell::Shell;
 use super::values::Resolution;
-use super::{batch_file, info_lists, talk, threads};
+use super::{batch_file, files, info_lists, talk, threads};
 use anyhow::{Context, anyhow};
-use base::film::atomic;
 use base::sampling::Sampler;
 use rayon::prelude::*;
 use readers::{LoadOptions, UpAxis, ViewList, fnv1a, is_built_in, load};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::fs;
-use std::io::Write;
 use std::path::{Path, PathBuf, absolute};
 use toml::Table;
 
@@ -69,8 +67,9 @@ pub fn run(args: DatasetArgs) -> Result<(), Failure> {
         }
     }
     let jobs = args.output.join("jobs.toml");
-    write(&jobs, &plan.jobs(&kept))?;
-    write(&args.output.join("metadata.json"), &format!("{:#}\n", plan.metadata(&kept, &left_out)))?;
+    files::save(&jobs, plan.jobs(&kept).as_bytes())?;
+    let metadata = format!("{:#}\n", plan.metadata(&kept, &left_out));
+    files::save(&args.output.join("metadata.json"), metadata.as_bytes())?;
     let done = match args.plan || kept.is_empty() {
         true => Ok(()),
         false => {
@@ -103,12 +102,6 @@ fn folders(models: &[PathBuf]) -> Vec<String> {
         if *count > 1 { format!("{stem}_{count}") } else { stem }
     };
     models.iter().map(&mut name).collect()
-}
-
-/// Writes a text, completely or not at all.
-fn write(path: &Path, text: &str) -> Result<(), Failure> {
-    let written = atomic::write_atomically(path, |file| file.write_all(text.as_bytes()));
-    written.with_context(|| format!("cannot write {}", path.display())).map_err(Failure::output)
 }
 
 /// Choices for all models of a data set.
@@ -159,7 +152,7 @@ impl Plan<'_> {
                 .with_context(|| format!("cannot make {}", own.display()))
                 .map_err(Failure::output)?;
             let list = self.transforms(&model, &shell, seed);
-            write(&own.join("transforms.json"), &format!("{list:#}\n"))?;
+            files::save(&own.join("transforms.json"), format!("{list:#}\n").as_bytes())?;
         }
         Ok(model)
     }

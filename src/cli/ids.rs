@@ -1,12 +1,10 @@
 //! Table of ids: names of the objects and materials that layers number.
 
 use super::exit::Failure;
-use anyhow::Context;
-use base::film::atomic;
+use super::files;
 use render::session::{Feature, Goal};
 use scene::Scene;
 use serde_json::{Value, json};
-use std::io::Write;
 use std::path::Path;
 
 /// Features that number objects or materials.
@@ -20,9 +18,7 @@ pub fn write_for(goal: &Goal, path: &Path, scene: &Scene) -> Result<(), Failure>
     if !NUMBERED.into_iter().any(|feature| goal.features.contains(feature)) {
         return Ok(());
     }
-    let text = format!("{:#}\n", table(scene));
-    let written = atomic::write_atomically(path, |file| file.write_all(text.as_bytes()));
-    written.with_context(|| format!("cannot write {}", path.display())).map_err(Failure::output)
+    files::save(path, format!("{:#}\n", table(scene)).as_bytes())
 }
 
 /// Returns ids and names of all objects and materials. Ids count from 1.

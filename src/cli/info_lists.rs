@@ -94,15 +94,13 @@ fn rounded(position: DVec3, largest: f64) -> [f64; 3] {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
     use scene::{MaterialId, Mesh};
 
-    #[test]
-    fn boxes_are_in_units_of_the_file() {
-        let positions =
-            vec![Vec3::new(-1.0, 0.0, 2.0), Vec3::new(3.0, 1.0, 0.0), Vec3::ZERO, Vec3::splat(9.0)];
-        let mesh = Mesh {
+    /// Returns a mesh with a triangle of its first three positions.
+    pub fn triangle(positions: Vec<Vec3>) -> Mesh {
+        Mesh {
             name: String::new(),
             positions,
             normals: Vec::new(),
@@ -112,7 +110,14 @@ mod tests {
             material: MaterialId(0),
             emission: None,
             attributes: Vec::new(),
-        };
+        }
+    }
+
+    #[test]
+    fn boxes_are_in_units_of_the_file() {
+        let positions =
+            vec![Vec3::new(-1.0, 0.0, 2.0), Vec3::new(3.0, 1.0, 0.0), Vec3::ZERO, Vec3::splat(9.0)];
+        let mesh = triangle(positions);
         let centre = DVec3::new(100.0, 0.0, 0.1);
         let scene = Scene { meshes: vec![mesh], centre, exponent: 1, ..Scene::default() };
         assert_eq!(bounds(&scene), json!({ "min": [98.0, 0.0, 0.1], "max": [106.0, 2.0, 4.1] }));

@@ -2,9 +2,8 @@
 
 use super::exit::Failure;
 use super::outputs::check_name;
-use super::talk;
+use super::{files, talk};
 use anyhow::{Context, anyhow};
-use base::film::atomic;
 use std::fs;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -77,9 +76,8 @@ impl Movie {
         ]);
         ffmpeg.args(ENCODING).arg(&part).stdin(Stdio::piped()).stdout(Stdio::null());
         let encoded = encode(ffmpeg, frames).and_then(|()| fs::read(&part));
-        let written =
-            encoded.and_then(|bytes| atomic::write_atomically(&self.0, |file| file.write_all(&bytes)));
-        written.with_context(|| format!("cannot write {}", self.0.display())).map_err(Failure::output)?;
+        let encoded = encoded.with_context(|| format!("cannot write {}", self.0.display()));
+        files::save(&self.0, &encoded.map_err(Failure::output)?)?;
         talk::wrote(&format!("wrote {}", self.0.display()), std::slice::from_ref(&self.0));
         Ok(())
     }

@@ -6,6 +6,7 @@ use base::film::{
     ExrFile, Film, Image, Look, Pixels, false_colour, write_exr, write_grey16, write_png, write_srgb8,
 };
 use base::stats::StageTime;
+use render::session::{DEPTH, NO_DEPTH};
 use std::path::{Path, PathBuf};
 
 /// Files that have been written, with what there is to say of them.
@@ -29,12 +30,6 @@ impl Written {
         format!("wrote {} ({width}x{height}, {seconds:.1} s{exposure})", self.names)
     }
 }
-
-/// Layer of depth.
-const DEPTH: &str = "depth.Z";
-
-/// Depth from which on there is no surface.
-const FAR: f32 = 1e10;
 
 /// Facts of an image that differ between equal renders.
 const CIRCUMSTANCES: [&str; 2] = ["render_seconds", "threads"];
@@ -119,7 +114,7 @@ fn write_depth(path: &Path, scale: f32, film: &Film) -> Result<Option<PathBuf>, 
     let layer = film.layers.iter().find(|layer| layer.name == DEPTH).map(|layer| &layer.pixels);
     let Some(Pixels::Scalar(depth)) = layer else { return Ok(None) };
     // `as` saturates.
-    let number = |depth: &f32| if *depth < FAR { (depth * scale).round() as u16 } else { 0 };
+    let number = |depth: &f32| if *depth < NO_DEPTH { (depth * scale).round() as u16 } else { 0 };
     let numbers: Vec<u16> = depth.pixels.iter().map(number).collect();
     write_grey16(path, [depth.width, depth.height], &numbers).map_err(Failure::output)?;
     Ok(Some(path.to_owned()))

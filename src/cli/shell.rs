@@ -53,23 +53,13 @@ impl Shell {
 
 #[cfg(test)]
 mod tests {
+    use super::super::info_lists::tests::triangle;
     use super::*;
-    use scene::{MaterialId, Mesh};
 
     #[test]
     fn the_whole_sphere_is_in_view_at_distance_one() {
         let positions = vec![Vec3::new(-1.0, 0.0, 0.0), Vec3::new(1.0, 0.0, 0.0), Vec3::new(0.0, 0.5, 0.5)];
-        let mesh = Mesh {
-            name: String::new(),
-            positions,
-            normals: Vec::new(),
-            uvs: Vec::new(),
-            tangents: Vec::new(),
-            triangles: vec![[0, 1, 2]],
-            material: MaterialId(0),
-            emission: None,
-            attributes: Vec::new(),
-        };
+        let mesh = triangle(positions);
         let scene = Scene { meshes: vec![mesh], centre: DVec3::new(5.0, 0.0, 0.0), ..Scene::default() };
         let shell = Shell::around(&scene, UpAxis::Z).unwrap();
         assert!((shell.middle - DVec3::new(5.0, 0.25, 0.25)).length() < 1e-6);

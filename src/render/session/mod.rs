@@ -23,7 +23,7 @@ pub(crate) use former::{Former, VisibleDifferences, WalkState};
 pub use frame::{Remark, RenderedFrame};
 pub use goal::{ErrorLimit, Goal, PlanGoal, TimeGoal};
 
-pub use transport::eye::{Averaging, Feature, Features, UnknownFeature};
+pub use transport::eye::{Averaging, DEPTH, Feature, Features, NO_DEPTH, UnknownFeature};
 
 use crate::method::LightStore;
 use base::stats::{Stage, Stats};

@@ -10,7 +10,7 @@
 //!
 //! Deviation: the number of layers is the number that the fullest pixel needs, and at least three.
 
-use super::tiles::by_tiles;
+use super::tiles::{by_tiles, pixels_between};
 use crate::paths::Estimand;
 use base::film::{Image, Layer, Pixels};
 use base::math::{LANES, first_lanes};
@@ -71,9 +71,8 @@ impl Masks {
         let ids: Vec<f32> = self.names(&world.scene).map(|name| id_of(&name)).collect();
         let has_gaps = world.scene.materials.iter().any(|material| material.opacity.is_some());
         let sampler = Sampler { world, view, seed, ids: &ids, has_gaps };
-        let pixels = by_tiles(view, control, |first: [u32; 2], last: [u32; 2]| {
-            let pixels = (first[1]..=last[1]).flat_map(|y| (first[0]..=last[0]).map(move |x| [x, y]));
-            pixels.map(|pixel| sampler.ranks(pixel)).collect()
+        let pixels = by_tiles(view, control, |first, last| {
+            pixels_between(first, last).map(|pixel| sampler.ranks(pixel)).collect()
         });
         let most = pixels.pixels.iter().map(Vec::len).max().unwrap_or(0);
         let layer = |number: usize| {

@@ -30,7 +30,7 @@
 
 use super::cryptomatte::Masks;
 use super::seen::{FeatureSampler, FeatureSettings, PixelFeatures};
-use super::tiles::by_tiles;
+use super::tiles::{by_tiles, pixels_between};
 use base::film::{Image, Layer};
 use base::math::Rgb;
 use base::progress::Control;
@@ -41,7 +41,10 @@ use world::World;
 use world::view::View;
 
 /// Depth without a surface: Blender's value.
-const NO_DEPTH: f32 = 1e10;
+pub const NO_DEPTH: f32 = 1e10;
+
+/// Name of the layer of depth.
+pub const DEPTH: &str = "depth.Z";
 
 /// Quantity of the visible surfaces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -193,10 +196,7 @@ impl SeenPixels {
         control: &Control,
     ) -> SeenPixels {
         let sampler = FeatureSampler { world, view, settings };
-        let look = |first: [u32; 2], last: [u32; 2]| {
-            let pixels = (first[1]..=last[1]).flat_map(|y| (first[0]..=last[0]).map(move |x| [x, y]));
-            pixels.map(|pixel| sampler.first_hit(pixel)).collect()
-        };
+        let look = |first, last| pixels_between(first, last).map(|pixel| sampler.first_hit(pixel)).collect();
         SeenPixels { pixels: by_tiles(view, control, look) }
     }
 
@@ -239,7 +239,7 @@ impl SeenPixels {
                     Layer::vector("geometricNormal", pixels.map(|p| p.geometric_normal / p.samples as f32))
                 }
                 Feature::Position => Layer::vector("position", pixels.map(position)),
-                Feature::Depth => Layer::scalar("depth.Z", pixels.map(depth)),
+                Feature::Depth => Layer::scalar(DEPTH, pixels.map(depth)),
                 Feature::Material => {
                     Layer::id("materialId", pixels.map(|p| p.nearest.map_or(0, |n| n.material + 1)))
                 }

@@ -18,6 +18,8 @@ mod merge;
 mod more;
 mod parts;
 mod pass;
+#[cfg(test)]
+mod path_end_tests;
 mod photon_count;
 mod pilot;
 mod points;
@@ -38,7 +40,7 @@ pub use cryptomatte::Masks;
 pub use direct_light::merged_points;
 pub use direct_sampling::{DirectSampling, LightSources};
 pub use extra::ExtraSamples;
-pub use features::{Averaging, EvenSurface, Feature, Features, SeenPixels, UnknownFeature};
+pub use features::{Averaging, DEPTH, EvenSurface, Feature, Features, NO_DEPTH, SeenPixels, UnknownFeature};
 pub use guides::{FirstSurfaces, FullPaths, Guide, PackedGuide, PackedGuides};
 pub use pass::EyePass;
 pub use pilot::{ByPhotons, EyePilot};

@@ -40,3 +40,8 @@ pub(super) fn by_tiles<T: Clone + Default + Send>(
     }
     Image { width: window.width, height: window.height, pixels }
 }
+
+/// Lists the film pixels from a first to a last one, by rows.
+pub(super) fn pixels_between(first: [u32; 2], last: [u32; 2]) -> impl Iterator<Item = [u32; 2]> {
+    (first[1]..=last[1]).flat_map(move |y| (first[0]..=last[0]).map(move |x| [x, y]))
+}

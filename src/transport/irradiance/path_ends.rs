@@ -63,7 +63,6 @@ impl PathEnds {
         if depth > self.max_edges || albedo == Rgb::ZERO {
             return None;
         }
-        let (irradiance, _) = self.irradiance.at(position, normal)?;
-        Some(albedo * irradiance * FRAC_1_PI)
+        self.irradiance.at(position, normal).map(|(irradiance, _)| albedo * irradiance * FRAC_1_PI)
     }
 }

@@ -14,7 +14,6 @@ mod packet;
 mod photon_ends;
 mod policy;
 mod start;
-
 #[cfg(test)]
 mod tests;
 mod vertex;

@@ -18,14 +18,12 @@ impl Packet {
         results: &mut [Rgb],
     ) -> u16 {
         let Some(ends) = policy.path_ends() else { return found };
-        let behind = found & (self.at(PathStage::Full) | self.at(PathStage::Bent));
         let mut left = found;
-        for lane in lanes_in(behind) {
+        for lane in lanes_in(found & (self.at(PathStage::Full) | self.at(PathStage::Bent))) {
             let (albedo, rest) = bsdfs.lane(lane).split_diffuse(bsdfs.wo(lane));
-            let (normal, direction) = (surfaces.normal.get(lane), self.rays.get(lane).direction);
-            let facing = if normal.dot(direction) < 0.0 { normal } else { -normal };
-            let reflected = ends.reflected(depth, surfaces.position.get(lane), facing, albedo);
-            let Some(reflected) = reflected else { continue };
+            let (place, normal) = (surfaces.position.get(lane), surfaces.normal.get(lane));
+            let facing = if normal.dot(self.rays.get(lane).direction) < 0.0 { normal } else { -normal };
+            let Some(reflected) = ends.reflected(depth, place, facing, albedo) else { continue };
             results[self.slot[lane] as usize] += self.throughput.get(lane) * reflected;
             bsdfs.replace(lane, &rest);
             let goes_on = rest.has_smooth() || rest.has_delta();
