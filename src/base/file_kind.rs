@@ -153,8 +153,8 @@ pub fn file_kind(bytes: &[u8]) -> Option<FileKind> {
             let text =
                 head.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(head).trim_ascii_start().to_ascii_lowercase();
             let has = |word: &[u8]| text.windows(word.len()).any(|part| part == word);
-            let found = ELEMENTS.iter().find(|(word, _)| text.starts_with(b"<") && has(word));
-            found.map(|(_, kind)| *kind)
+            let element = ELEMENTS.iter().find(|(word, _)| text.starts_with(b"<") && has(word));
+            element.map(|(_, kind)| *kind)
         }
     }
 }

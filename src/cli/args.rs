@@ -32,14 +32,14 @@ pub struct Cli {
 }
 
 impl Cli {
-    /// Parses `arguments`, the program's name first.
+    /// Parses `words`, the program's name first.
     ///
     /// Negative numbers are values, not options. Their parsers refuse them with the expected range.
     ///
     /// # Errors
     /// If the arguments are wrong, or ask for help or the version.
-    pub fn of(arguments: impl IntoIterator<Item = impl Into<OsString> + Clone>) -> Result<Cli, clap::Error> {
-        let arguments: Vec<OsString> = arguments.into_iter().map(Into::into).collect();
+    pub fn read(words: impl IntoIterator<Item = impl Into<OsString> + Clone>) -> Result<Cli, clap::Error> {
+        let arguments: Vec<OsString> = words.into_iter().map(Into::into).collect();
         let mut command = Cli::definition();
         if arguments.get(1).is_some_and(|first| first == "--version") {
             command = command.long_version(version::text());

@@ -171,7 +171,7 @@ impl BatchRun {
     /// If a signal stopped the run. Other failures are counted.
     fn render(&self, tasks: Vec<Task>, count: usize) -> Result<(), Failure> {
         let Manner { jobs, progress, .. } = self.manner;
-        let (at_once, span) = (jobs.min(tasks.len()), RunSpan::whole());
+        let (at_once, span) = (jobs.min(tasks.len()), RunSpan::begin());
         // The rest of the threads goes to the views of each list.
         let within = jobs / at_once.max(1);
         if at_once > 1 {

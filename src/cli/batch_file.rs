@@ -85,7 +85,7 @@ impl JobEntry {
     /// # Errors
     /// If its options are wrong. The error names their place in the job file.
     pub fn command(&self) -> Result<Command, Failure> {
-        Cli::of(&self.arguments).map(|cli| cli.command).map_err(|error| {
+        Cli::read(&self.arguments).map(|cli| cli.command).map_err(|error| {
             let argument = match error.get(ContextKind::InvalidArg) {
                 Some(ContextValue::String(argument)) => argument.as_str(),
                 Some(ContextValue::Strings(arguments)) => arguments.first().map_or("", String::as_str),

@@ -78,8 +78,8 @@ pub struct RunSpan {
 }
 
 impl RunSpan {
-    /// Returns the whole of a run that begins now.
-    pub fn whole() -> RunSpan {
+    /// Returns a run that begins now, without parts.
+    pub fn begin() -> RunSpan {
         RunSpan { start: Instant::now(), fractions: [0.0, 1.0] }
     }
 
@@ -162,7 +162,7 @@ mod tests {
 
     #[test]
     fn fractions_rise_through_stages_and_frames_to_the_end_of_their_span() {
-        let mut course = RunProgress::new(2, ALL, RunSpan::whole().part(2, 3));
+        let mut course = RunProgress::new(2, ALL, RunSpan::begin().part(2, 3));
         let mut last = course.fraction(None);
         assert!((last - 2.0 / 3.0).abs() < 1e-9);
         for _ in 0..2 {
@@ -182,7 +182,7 @@ mod tests {
     #[test]
     fn stages_that_a_run_has_not_leave_no_gap_and_fractions_never_fall() {
         let goal = Goal { denoise: Some(false), ..Goal::default() };
-        let mut course = RunProgress::new(1, Stages::new(&goal), RunSpan::whole());
+        let mut course = RunProgress::new(1, Stages::new(&goal), RunSpan::begin());
         assert_eq!((course.fraction(None), course.eta_seconds()), (0.0, None));
         let half = 0.5 * (1.0 - END);
         assert!((course.fraction(Some(&at(Stage::Render, 5))) - half).abs() < 1e-9);
@@ -195,14 +195,14 @@ mod tests {
     fn plans_and_measurements_have_their_shares() {
         let verify = Some(render::verify::VerifySettings::default());
         let choice = Stages::new(&Goal { may_choose: true, verify, ..Goal::default() });
-        let mut course = RunProgress::new(1, choice, RunSpan::whole());
+        let mut course = RunProgress::new(1, choice, RunSpan::begin());
         assert_eq!(course.fraction(Some(&Progress { is_planning: true, ..at(Stage::Verify, 9) })), 0.0);
         assert!(course.fraction(Some(&at(Stage::Render, 0))) >= OF_CHOICE);
         assert!(course.fraction(Some(&at(Stage::Render, 10))) < 0.5);
         assert!(course.fraction(Some(&at(Stage::Verify, 5))) < 0.9);
         let searched = PlanGoal::Error(ErrorLimit { error: 0.1, max_samples: 1, pinned: Vec::new() });
         let mut course =
-            RunProgress::new(1, Stages::new(&Goal { plan: searched, ..Goal::default() }), RunSpan::whole());
+            RunProgress::new(1, Stages::new(&Goal { plan: searched, ..Goal::default() }), RunSpan::begin());
         assert_eq!(course.fraction(Some(&Progress { is_planning: true, ..at(Stage::Render, 9) })), 0.0);
         course.frame_done();
         assert_eq!(course.fraction(None), 1.0);

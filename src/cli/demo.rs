@@ -9,7 +9,7 @@ const COMMAND: [&str; 7] = ["lightsplat", "render", "kitchen", "-r", "640x360", 
 
 /// Runs the command.
 pub fn run() -> Result<(), Failure> {
-    let command = Cli::of(COMMAND).map_err(Failure::render)?.command;
+    let command = Cli::read(COMMAND).map_err(Failure::render)?.command;
     talk::line(&format!("demo: this runs `{}`", COMMAND.join(" ")));
     talk::line("demo: it writes lightsplat-demo.exr and lightsplat-demo.png to the current folder");
     match command {
@@ -25,7 +25,7 @@ mod tests {
 
     #[test]
     fn the_demo_renders_a_built_in_scene_to_the_files_that_it_names() {
-        let Command::Render(args) = Cli::of(COMMAND).unwrap().command else { panic!("no render") };
+        let Command::Render(args) = Cli::read(COMMAND).unwrap().command else { panic!("no render") };
         assert!(readers::is_built_in(&args.scene));
         let files = StillFiles::new(&args).unwrap();
         let names: Vec<_> = files.paths().map(|path| path.to_str().unwrap()).collect();

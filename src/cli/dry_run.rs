@@ -44,7 +44,7 @@ pub fn walk(
 /// Prints files, resolution, method and memory.
 fn report(files: &[String], view: &View, goal: &Goal, session: &Session) -> Result<(), Failure> {
     let image = session.expected_memory(view, goal).map_err(Failure::usage)?;
-    let scene = Requirements::of(&session.world.scene).memory.total() as u64;
+    let scene = Requirements::new(&session.world.scene).memory.total() as u64;
     let method = method(goal);
     let window = &view.window;
     talk::event("dry_run", || {

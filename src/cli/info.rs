@@ -17,7 +17,7 @@ const LISTS: [&str; 6] = ["box", "cameras", "frame_range", "lights", "material_n
 pub fn run(args: InfoArgs) -> Result<(), Failure> {
     let loaded = opened::read(&args.scene, &args.reading.options())?;
     let facts = facts(&loaded);
-    let requires = Requirements::of(&loaded.scene);
+    let requires = Requirements::new(&loaded.scene);
     if args.json {
         let mut facts = facts;
         facts["requires"] = json!(requires);

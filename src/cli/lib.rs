@@ -85,7 +85,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         let printed = talk::print(&set_args::list(&Cli::definition()));
         return printed.map_or_else(|failure| ExitCode::from(failure.code()), |()| ExitCode::SUCCESS);
     }
-    let cli = match Cli::of(arguments) {
+    let cli = match Cli::read(arguments) {
         Ok(cli) => cli,
         Err(error) => {
             let text = error.render().to_string();

@@ -92,7 +92,7 @@ impl Summands {
                 all.seeds.push(seed);
             }
             let by_pixel = file.numbers(SAMPLES).map(|own| Weight::ByPixel(own.pixels));
-            all.weights.push(by_pixel.unwrap_or(Weight::Whole(spp)));
+            all.weights.push(by_pixel.unwrap_or(Weight::Uniform(spp)));
         }
         Ok(all)
     }
@@ -142,7 +142,7 @@ fn noisy(path: &Path) -> Result<ExrFile, Failure> {
 ///
 /// The image is partial if a pixel has no sample.
 fn count_samples(merged: &mut ExrFile, weights: &[Weight], pixels: usize) {
-    let samples = |pixel| weights.iter().map(|weight| weight.of(pixel)).sum::<f64>();
+    let samples = |pixel| weights.iter().map(|weight| weight.at(pixel)).sum::<f64>();
     let all: Vec<f64> = (0..pixels).map(samples).collect();
     merged.set("spp", all.iter().sum::<f64>() / pixels.max(1) as f64);
     merged.set("partial", if all.contains(&0.0) { "true" } else { "false" });

@@ -199,7 +199,7 @@ mod tests {
     fn the_watcher_ends_with_the_work_and_the_result_comes_through() {
         let control = Control::new();
         for mode in [ProgressMode::None, ProgressMode::Auto, ProgressMode::Ndjson, ProgressMode::Openjd] {
-            let mut watch = Watch::new(mode, RunProgress::new(2, Stages::default(), RunSpan::whole()));
+            let mut watch = Watch::new(mode, RunProgress::new(2, Stages::default(), RunSpan::begin()));
             assert_eq!(watch.frame(None, &control, || 7, |result| *result == 7), 7);
             assert_eq!(watch.frame(None, &control, || 8, |result| *result == 7), 8);
             assert_eq!(watch.run.frames(), [1, 2]);

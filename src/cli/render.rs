@@ -31,7 +31,7 @@ pub fn run(args: RenderArgs) -> Result<(), Failure> {
     interrupt::cancel_on_signal(&control).context("cannot catch signals").map_err(Failure::render)?;
     threads::pool(job.threads)?.install(|| {
         let opened = opened::open(&job.scene, &job.reading)?;
-        still(&job, &opened, RunSpan::whole(), &control)
+        still(&job, &opened, RunSpan::begin(), &control)
     })
 }
 

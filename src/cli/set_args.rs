@@ -244,7 +244,7 @@ mod tests {
     use super::*;
 
     fn error(words: &str) -> String {
-        Cli::of(words.split(' ')).map(|_| ()).unwrap_err().to_string()
+        Cli::read(words.split(' ')).map(|_| ()).unwrap_err().to_string()
     }
 
     #[test]
@@ -255,7 +255,7 @@ mod tests {
             "--set keep-noisy=on",
             "--set inspect=on",
         ] {
-            assert!(Cli::of(render(good).split(' ')).is_ok(), "{good}");
+            assert!(Cli::read(render(good).split(' ')).is_ok(), "{good}");
         }
         for (bad, said) in [
             ("--set epsilon=2", "'--set epsilon=<EPSILON>': expected from 0 to 1"),

@@ -84,7 +84,7 @@ mod tests {
     fn items_are_worked_on_at_a_time_with_their_part_of_the_threads() {
         let control = Control::new();
         let side =
-            SideBySide { jobs: 2, control: &control, progress: ProgressMode::None, span: RunSpan::whole() };
+            SideBySide { jobs: 2, control: &control, progress: ProgressMode::None, span: RunSpan::begin() };
         let (both, seen) = (Barrier::new(2), Mutex::new(BTreeSet::new()));
         let done = threads::pool(5).unwrap().install(|| {
             side.each((0..8).collect(), |item: usize, _| {
@@ -103,7 +103,7 @@ mod tests {
     fn a_failure_ends_the_run_and_is_returned() {
         let control = Control::new();
         let side =
-            SideBySide { jobs: 1, control: &control, progress: ProgressMode::None, span: RunSpan::whole() };
+            SideBySide { jobs: 1, control: &control, progress: ProgressMode::None, span: RunSpan::begin() };
         let begun = Mutex::new(0);
         let done = side.each(vec![1, 2, 3, 4], |item, _| {
             *begun.lock().unwrap() += 1;

@@ -40,7 +40,7 @@ pub fn run_job(job: WalkJob) -> Result<(), Failure> {
     interrupt::cancel_on_signal(&control).context("cannot catch signals").map_err(Failure::render)?;
     threads::pool(job.threads)?.install(|| {
         let opened = opened::open(&job.scene, &job.reading)?;
-        walk(job, &opened, RunSpan::whole(), &control)
+        walk(job, &opened, RunSpan::begin(), &control)
     })
 }
 

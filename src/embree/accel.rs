@@ -5,7 +5,7 @@ use super::placed::{self, PlacedGroup};
 use super::raw_scene::RawScene;
 use super::ray::{ALL_GEOMETRY, OCCLUDING, without_hit};
 use super::triangles::{self, TriangleMesh};
-use super::{BuildQuality, Device, EmbreeError, Hit, Ray, Width};
+use super::{Device, EmbreeError, Hit, Ray, Width};
 use base::stats::meter::{self, Query};
 use embree4_sys as sys;
 use glam::Vec3;
@@ -27,7 +27,7 @@ unsafe impl Send for Accel {}
 unsafe impl Sync for Accel {}
 
 impl Accel {
-    /// Builds with all threads of `device`, at medium quality.
+    /// Builds with all threads of `device`.
     ///
     /// Ids in hits are indices into `meshes` and into a mesh's `triangles`. Meshes without triangles keep their index
     /// and are never hit. Vertices are copied.
@@ -36,19 +36,7 @@ impl Accel {
     /// If a triangle refers to a missing vertex, or has a coordinate for which Embree would silently ignore it. Also if
     /// Embree fails (memory).
     pub fn build(device: &Device, meshes: &[TriangleMesh]) -> Result<Accel, EmbreeError> {
-        Accel::build_with(device, meshes, BuildQuality::default())
-    }
-
-    /// Builds like [`Accel::build`], with a quality.
-    ///
-    /// # Errors
-    /// Like [`Accel::build`].
-    pub fn build_with(
-        device: &Device,
-        meshes: &[TriangleMesh],
-        quality: BuildQuality,
-    ) -> Result<Accel, EmbreeError> {
-        Accel::build_placed(device, meshes, &[], quality)
+        Accel::build_placed(device, meshes, &[])
     }
 
     /// Builds like [`Accel::build`], with groups of meshes that are seen at several places.
@@ -59,14 +47,13 @@ impl Accel {
         device: &Device,
         meshes: &[TriangleMesh],
         groups: &[PlacedGroup],
-        quality: BuildQuality,
     ) -> Result<Accel, EmbreeError> {
         triangles::check(meshes.iter().chain(groups.iter().flat_map(|group| group.meshes)))?;
-        let scene = RawScene::new(device, quality)?;
+        let scene = RawScene::new(device)?;
         for (id, mesh) in (0u32..).zip(meshes) {
-            scene.attach(device, id, mesh, quality)?;
+            scene.attach(device, id, mesh)?;
         }
-        let numbers = placed::attach(&scene, device, meshes.len(), groups, quality)?;
+        let numbers = placed::attach(&scene, device, meshes.len(), groups)?;
         scene.commit(device)?;
         let bounds = scene.bounds();
         Ok(Accel { scene, bounds, numbers, widest: device.widest_packets(), device: device.clone() })

@@ -4,7 +4,6 @@
 //! bytes per place. Embree would build one geometry per place otherwise, of about eight times as many.
 
 use super::numbers::{GroupNumbers, PlacedNumbers};
-use super::quality::BuildQuality;
 use super::raw_scene::RawScene;
 use super::ray::ALL_GEOMETRY;
 use super::triangles::TriangleMesh;
@@ -27,7 +26,6 @@ pub(super) fn attach(
     device: &Device,
     own: usize,
     groups: &[PlacedGroup],
-    quality: BuildQuality,
 ) -> Result<Option<PlacedNumbers>, EmbreeError> {
     let count = groups.iter().fold(own, |count, g| count.saturating_add(g.meshes.len() * g.placements.len()));
     if u32::try_from(count).is_err() {
@@ -39,9 +37,9 @@ pub(super) fn attach(
         let meshes = group.meshes.len() as u32;
         numbers.groups.push(GroupNumbers { first, meshes });
         first += meshes * group.placements.len() as u32;
-        let scene = RawScene::new(device, quality)?;
+        let scene = RawScene::new(device)?;
         for (id, mesh) in (0u32..).zip(group.meshes) {
-            scene.attach(device, id, mesh, quality)?;
+            scene.attach(device, id, mesh)?;
         }
         scene.commit(device)?;
         if scene.bounds().is_some() && !group.placements.is_empty() {

@@ -1,39 +1,34 @@
 //! A scene of Embree while it is filled.
 
-use super::quality::BuildQuality;
 use super::ray::{ALL_GEOMETRY, CLEAR};
 use super::triangles::{TriangleMesh, copy_buffer};
 use super::{Device, EmbreeError};
 use embree4_sys as sys;
 use glam::Vec3;
 
+/// Quality of hierarchies: a binned surface-area heuristic. Rays lose about one hit in a million.
+const BUILD_QUALITY: sys::RTCBuildQuality = sys::RTC_BUILD_QUALITY_MEDIUM;
+
 /// A scene, which is released when it is dropped. Instances of it keep it alive.
 pub(super) struct RawScene(sys::RTCScene);
 
 impl RawScene {
     /// Makes an empty scene.
-    pub fn new(device: &Device, quality: BuildQuality) -> Result<RawScene, EmbreeError> {
+    pub fn new(device: &Device) -> Result<RawScene, EmbreeError> {
         // SAFETY: the device is live.
         let scene = unsafe { sys::rtcNewScene(device.handle()) };
         device.check("making a scene")?;
-        let (quality, flags) = quality.to_embree();
         // SAFETY: the scene is live and not yet committed. The flag allows a query to pass its own filter;
         // without it Embree ignores the filter silently.
         unsafe {
-            sys::rtcSetSceneBuildQuality(scene, quality);
-            sys::rtcSetSceneFlags(scene, flags | sys::RTC_SCENE_FLAG_FILTER_FUNCTION_IN_ARGUMENTS);
+            sys::rtcSetSceneBuildQuality(scene, BUILD_QUALITY);
+            sys::rtcSetSceneFlags(scene, sys::RTC_SCENE_FLAG_FILTER_FUNCTION_IN_ARGUMENTS);
         }
         Ok(RawScene(scene))
     }
 
     /// Copies a mesh into the scene. Meshes without triangles are left out.
-    pub fn attach(
-        &self,
-        device: &Device,
-        id: u32,
-        mesh: &TriangleMesh,
-        quality: BuildQuality,
-    ) -> Result<(), EmbreeError> {
+    pub fn attach(&self, device: &Device, id: u32, mesh: &TriangleMesh) -> Result<(), EmbreeError> {
         if mesh.triangles.is_empty() {
             return Ok(());
         }
@@ -47,7 +42,7 @@ impl RawScene {
         // geometry whose buffers are missing is not attached.
         unsafe {
             if copied {
-                sys::rtcSetGeometryBuildQuality(geometry, quality.to_embree().0);
+                sys::rtcSetGeometryBuildQuality(geometry, BUILD_QUALITY);
                 sys::rtcSetGeometryMask(geometry, if mesh.occludes { ALL_GEOMETRY } else { CLEAR });
                 sys::rtcCommitGeometry(geometry);
                 sys::rtcAttachGeometryByID(self.0, geometry, id);

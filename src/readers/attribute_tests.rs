@@ -264,7 +264,7 @@ fn attributes_count_where_something_looks_them_up() {
     let text = HEAD.replace("{ attribute = \"color\" }", "0.5");
     let text = format!("{text}mesh = [{{ file = \"a.ply\", material = \"m\" }}]\n");
     let without = load_beside("s.toml", &text, ("a.ply", &file)).unwrap();
-    let [with, without] = [&with, &without].map(|loaded| Requirements::of(&loaded.scene));
+    let [with, without] = [&with, &without].map(|loaded| Requirements::new(&loaded.scene));
     assert_eq!((with.attributes, without.attributes), (1, 0));
     assert_eq!(with.memory.geometry - without.memory.geometry, 4 * 12);
     assert!(with.to_string().contains("mesh attributes  1") && !without.to_string().contains("attributes"));

@@ -33,10 +33,10 @@ impl NamedAttribute {
 /// Mitsuba 3 appends `_color` to the names of attributes whose channels are called `_r`, `_g` and `_b`.
 pub(crate) fn find<'a>(attributes: &'a [NamedAttribute], wanted: &str) -> Option<&'a NamedAttribute> {
     let called = |name: &str| attributes.iter().find(|attribute| attribute.name == name);
-    let found = |name: &str| {
+    let named = |name: &str| {
         called(name).or_else(|| called(&format!("vertex_{name}"))).or_else(|| called(&format!("face_{name}")))
     };
-    found(wanted).or_else(|| found(wanted.strip_suffix("_color")?))
+    named(wanted).or_else(|| named(wanted.strip_suffix("_color")?))
 }
 
 /// Gives the vertices of a mesh new numbers: value `i` becomes that of vertex `from(i)`.

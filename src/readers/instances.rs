@@ -174,12 +174,12 @@ fn copies(
     let of_member = |&member: &usize| {
         let plan = &contents.meshes[member];
         // A product with the identity may change the sign of zeros.
-        let whole = match plan.placement.to_world == DMat4::IDENTITY {
+        let mesh_to_world = match plan.placement.to_world == DMat4::IDENTITY {
             true => *to_world,
             false => *to_world * plan.placement.to_world,
         };
         let parts = read[member].parts.iter().cloned();
-        parts.map(move |part| part.placed(plan, whole, name)).collect::<Vec<_>>()
+        parts.map(move |part| part.placed(plan, mesh_to_world, name)).collect::<Vec<_>>()
     };
     contents.groups[group].iter().flat_map(of_member).collect()
 }

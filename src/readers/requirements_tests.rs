@@ -9,7 +9,7 @@ fn requirements(text: &str) -> Requirements {
     let path = folder.path().join("s.toml");
     let head = "resolution = [8, 8]\ncamera = { origin = [0, 0, 5], target = [0, 0, 0], fov = 60 }\n";
     std::fs::write(&path, format!("{head}{text}")).unwrap();
-    Requirements::of(&load(&path, &LoadOptions::default()).unwrap().scene)
+    Requirements::new(&load(&path, &LoadOptions::default()).unwrap().scene)
 }
 
 #[test]

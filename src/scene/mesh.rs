@@ -94,21 +94,21 @@ impl Mesh {
     /// the mesh lacks the attribute.
     #[inline]
     pub fn attribute(&self, id: AttributeId, t: usize, b: Vec2) -> Rgb {
-        let found = self.attributes.iter().find(|attribute| attribute.id == id);
-        found.map_or(Rgb::ONE, |found| found.values.at(t, &self.triangles[t], b))
+        let attribute = self.attributes.iter().find(|attribute| attribute.id == id);
+        attribute.map_or(Rgb::ONE, |attribute| attribute.values.at(t, &self.triangles[t], b))
     }
 
     /// Returns the integral of an attribute over the surface, and the surface's area; zeros if the mesh lacks it.
     pub fn integrate_attribute(&self, id: AttributeId) -> (DVec3, f64) {
-        let Some(found) = self.attributes.iter().find(|attribute| attribute.id == id) else {
+        let Some(attribute) = self.attributes.iter().find(|attribute| attribute.id == id) else {
             return (DVec3::ZERO, 0.0);
         };
-        let of_triangle = |(sum, whole): (DVec3, f64), t: usize| {
+        let of_triangle = |(sum, total): (DVec3, f64), t: usize| {
             let [a, b, c] = self.corners(t).map(|corner| corner.as_dvec3());
             let area = 0.5 * (b - a).cross(c - a).length();
-            let corners = found.values.corners(t, &self.triangles[t]);
+            let corners = attribute.values.corners(t, &self.triangles[t]);
             let mean = corners.into_iter().map(|value| value.as_dvec3()).sum::<DVec3>() / 3.0;
-            (sum + area * mean, whole + area)
+            (sum + area * mean, total + area)
         };
         (0..self.triangles.len()).fold((DVec3::ZERO, 0.0), of_triangle)
     }

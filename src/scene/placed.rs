@@ -11,8 +11,8 @@ impl Mesh {
     /// Returns the lowest and the highest corner of the box around all triangles; `None` without triangles.
     pub fn bounds(&self) -> Option<[Vec3; 2]> {
         let corners = self.triangles.iter().flatten().filter_map(|i| self.positions.get(*i as usize));
-        let whole = [Vec3::INFINITY, Vec3::NEG_INFINITY];
-        let [low, high] = corners.fold(whole, |[low, high], p| [low.min(*p), high.max(*p)]);
+        let empty = [Vec3::INFINITY, Vec3::NEG_INFINITY];
+        let [low, high] = corners.fold(empty, |[low, high], p| [low.min(*p), high.max(*p)]);
         low.cmple(high).all().then_some([low, high])
     }
 }

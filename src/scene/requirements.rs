@@ -115,7 +115,7 @@ pub struct Requirements {
 
 impl Requirements {
     /// Computes the requirements of `scene`.
-    pub fn of(scene: &Scene) -> Requirements {
+    pub fn new(scene: &Scene) -> Requirements {
         let mut r = Requirements { textures: scene.textures.len(), ..Requirements::default() };
         let mut used = vec![false; scene.materials.len()];
         let (mut glossy_area, mut specular_area) = (0.0, 0.0);
@@ -232,8 +232,8 @@ fn area(mesh: &Mesh) -> f64 {
 /// Returns the diagonal of the box around all triangles; 0 without any.
 fn diagonal(scene: &Scene) -> f64 {
     let boxes = scene.seen_bounds(|_| true).into_iter();
-    let whole = boxes.reduce(|[a, b], [low, high]| [a.min(low), b.max(high)]);
-    whole.map_or(0.0, |[low, high]| (high.as_dvec3() - low.as_dvec3()).length())
+    let around = boxes.reduce(|[a, b], [low, high]| [a.min(low), b.max(high)]);
+    around.map_or(0.0, |[low, high]| (high.as_dvec3() - low.as_dvec3()).length())
 }
 
 /// Returns the bytes of instances, in the scene, for hits and in the hierarchy.

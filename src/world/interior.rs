@@ -53,7 +53,7 @@ impl World {
     /// Returns the share of the light that an edge inside of the given length leaves.
     #[inline]
     pub fn through(&self, interior: Interior, length: f32) -> Rgb {
-        match interior.0.checked_sub(1).and_then(|mesh| self.absorption.of(mesh)) {
+        match interior.0.checked_sub(1).and_then(|mesh| self.absorption.coefficient(mesh)) {
             Some(absorption) => (absorption * -length).exp(),
             None => Rgb::ONE,
         }
@@ -109,7 +109,7 @@ impl World {
     /// Returns true if a mesh is the surface of glass that absorbs.
     #[inline]
     fn is_boundary(&self, mesh: u32) -> bool {
-        self.absorption.of(mesh).is_some()
+        self.absorption.coefficient(mesh).is_some()
     }
 }
 

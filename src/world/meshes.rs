@@ -1,7 +1,7 @@
 //! Meshes of a scene as input of acceleration structures.
 
 use crate::material::Materials;
-use embree::{Accel, BuildQuality, Device, EmbreeError, PlacedGroup, TriangleMesh};
+use embree::{Accel, Device, EmbreeError, PlacedGroup, TriangleMesh};
 use scene::Scene;
 
 /// Returns the stored meshes of a scene as input of an acceleration structure.
@@ -19,31 +19,21 @@ pub fn triangle_meshes<'a>(scene: &'a Scene, materials: &Materials) -> Vec<Trian
 ///
 /// # Errors
 /// If Embree cannot build the structure.
-pub(super) fn build(
-    device: &Device,
-    scene: &Scene,
-    materials: &Materials,
-    quality: BuildQuality,
-) -> Result<Accel, EmbreeError> {
-    build_of(device, scene, &triangle_meshes(scene, materials), quality)
+pub(super) fn build(device: &Device, scene: &Scene, materials: &Materials) -> Result<Accel, EmbreeError> {
+    build_of(device, scene, &triangle_meshes(scene, materials))
 }
 
 /// Builds the structure over the given meshes at the places of a scene.
-fn build_of(
-    device: &Device,
-    scene: &Scene,
-    meshes: &[TriangleMesh],
-    quality: BuildQuality,
-) -> Result<Accel, EmbreeError> {
+fn build_of(device: &Device, scene: &Scene, meshes: &[TriangleMesh]) -> Result<Accel, EmbreeError> {
     let placed = scene
         .groups
         .iter()
         .map(|group| PlacedGroup { meshes: &meshes[group.meshes.clone()], placements: &group.placements });
     let groups: Vec<PlacedGroup> = placed.collect();
-    Accel::build_placed(device, &meshes[..scene.own_mesh_count()], &groups, quality)
+    Accel::build_placed(device, &meshes[..scene.own_mesh_count()], &groups)
 }
 
-/// Builds the structure over the surfaces that light passes straight through; `None` if there are none. `whole` is the
+/// Builds the structure over the surfaces that light passes straight through; `None` if there are none. `all` is the
 /// structure over all meshes.
 ///
 /// # Errors
@@ -51,7 +41,7 @@ fn build_of(
 pub(super) fn sheets(
     scene: &Scene,
     materials: &Materials,
-    whole: &Accel,
+    all: &Accel,
 ) -> Result<Option<Accel>, EmbreeError> {
     let mut meshes = triangle_meshes(scene, materials);
     if meshes.iter().all(|mesh| mesh.occludes) {
@@ -59,5 +49,5 @@ pub(super) fn sheets(
     }
     // Emptied meshes keep the numbers of the others the same.
     meshes.iter_mut().filter(|mesh| mesh.occludes).for_each(|mesh| mesh.triangles = &[]);
-    build_of(whole.device(), scene, &meshes, BuildQuality::default()).map(Some)
+    build_of(all.device(), scene, &meshes).map(Some)
 }

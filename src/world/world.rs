@@ -9,7 +9,7 @@ use crate::specular::Specular;
 use crate::surface::Surface;
 use crate::triangle::{Triangle, Triangles};
 use base::math::{Frame, Placement, Rgb};
-use embree::{Accel, BuildQuality, Device, EmbreeError, Hit, Ray, TriangleId};
+use embree::{Accel, Device, EmbreeError, Hit, Ray, TriangleId};
 use glam::{Vec2, Vec3};
 use scene::{MaterialId, Mesh, Scene};
 
@@ -46,7 +46,7 @@ impl World {
     pub fn new(scene: Scene, threads: usize) -> Result<World, EmbreeError> {
         let device = Device::new(threads)?;
         let materials = Materials::new(&scene);
-        let accel = build(&device, &scene, &materials, BuildQuality::default())?;
+        let accel = build(&device, &scene, &materials)?;
         let diagonal = match accel.bounds() {
             Some((low, high)) if high != low => (high - low).length(),
             _ => 1.0,
@@ -71,15 +71,6 @@ impl World {
             sheets,
             absorption,
         })
-    }
-
-    /// Rebuilds the acceleration structure at another quality, for benchmarks.
-    ///
-    /// # Errors
-    /// If Embree cannot build the structure.
-    pub fn rebuild(&mut self, quality: BuildQuality) -> Result<(), EmbreeError> {
-        self.accel = build(self.accel.device(), &self.scene, &self.materials, quality)?;
-        Ok(())
     }
 
     /// Returns the nearest surface along a ray.
@@ -215,7 +206,7 @@ impl Absorption {
 
     /// Returns the coefficient inside a mesh; `None` if it does not absorb.
     #[inline]
-    pub fn of(&self, mesh: u32) -> Option<Rgb> {
+    pub fn coefficient(&self, mesh: u32) -> Option<Rgb> {
         self.by_mesh.get(mesh as usize).copied().filter(|absorption| *absorption != Rgb::ZERO)
     }
 }

@@ -90,11 +90,11 @@ impl<R: Read + Seek> ExrSource<R> {
         self.blocks[part] = positions;
         read?;
         let header = &self.meta.headers[part];
-        let whole = |(&channel, plane): (&usize, Plane)| {
+        let enlarged = |(&channel, plane): (&usize, Plane)| {
             let Vec2(across, down) = header.channels.list[channel].sampling;
             subsampled::enlarge(plane.samples, plane.size, [across, down])
         };
-        Ok(channels.iter().zip(planes).map(whole).collect())
+        Ok(channels.iter().zip(planes).map(enlarged).collect())
     }
 
     /// Reads the block at a position of the file.
@@ -199,8 +199,8 @@ struct Plane {
 }
 
 impl Plane {
-    fn new(channel: &ChannelDescription, whole: Vec2<usize>) -> Plane {
-        let size = [whole.0 / channel.sampling.0, whole.1 / channel.sampling.1];
+    fn new(channel: &ChannelDescription, image: Vec2<usize>) -> Plane {
+        let size = [image.0 / channel.sampling.0, image.1 / channel.sampling.1];
         let count = size[0] * size[1];
         let samples = match channel.sample_type {
             SampleType::F16 => FlatSamples::F16(vec![f16::ZERO; count]),

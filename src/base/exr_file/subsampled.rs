@@ -24,7 +24,7 @@ pub(super) fn decompress(header: &Header, block: Chunk, section: IntegerBounds) 
     claimed.blocks = BlockDescription::ScanLines;
     let claim =
         |bytes_per_pixel| ChannelList { bytes_per_pixel, ..ChannelList::new(header.channels.list.clone()) };
-    let whole = match header.compression {
+    let claimed_section = match header.compression {
         compression if is_of_bytes(compression) => {
             claimed.layer_size = Vec2(bytes, 1);
             claimed.channels = claim(1);
@@ -48,7 +48,7 @@ pub(super) fn decompress(header: &Header, block: Chunk, section: IntegerBounds) 
     Ok(header.compression.decompress_image_section_from_le(
         &claimed,
         block.compressed_pixels_le,
-        whole,
+        claimed_section,
         false,
     )?)
 }

@@ -8,16 +8,16 @@ use ::exr::prelude::FlatSamples;
 #[derive(Clone, Debug, PartialEq)]
 pub enum Weight {
     /// One weight for all pixels.
-    Whole(f64),
+    Uniform(f64),
     /// One weight per pixel.
     ByPixel(Vec<u32>),
 }
 
 impl Weight {
     /// Returns the weight of a pixel.
-    pub fn of(&self, pixel: usize) -> f64 {
+    pub fn at(&self, pixel: usize) -> f64 {
         match self {
-            Weight::Whole(weight) => *weight,
+            Weight::Uniform(weight) => *weight,
             Weight::ByPixel(weights) => weights.get(pixel).copied().unwrap_or_default().into(),
         }
     }
@@ -42,7 +42,7 @@ impl ExrFile {
             let reason = format!("its parts or channels differ from {a}");
             return Err(ImageError::Decode { path: b.to_string().into(), reason });
         }
-        let sum = |pixel: usize| weights.iter().map(|weight| weight.of(pixel)).sum::<f64>();
+        let sum = |pixel: usize| weights.iter().map(|weight| weight.at(pixel)).sum::<f64>();
         for (p, part) in self.parts.layer_data.iter_mut().enumerate() {
             for (c, channel) in part.channel_data.list.iter_mut().enumerate() {
                 let name = text(&channel.name);
@@ -56,7 +56,7 @@ impl ExrFile {
                 let mut means = vec![0.0f64; channel.sample_data.len()];
                 for (samples, weight) in std::iter::once(&channel.sample_data).chain(of_others).zip(weights) {
                     for (i, (mean, x)) in means.iter_mut().zip(samples.values_as_f32()).enumerate() {
-                        let part = weight.of(i) / sum(i).max(f64::MIN_POSITIVE);
+                        let part = weight.at(i) / sum(i).max(f64::MIN_POSITIVE);
                         *mean += if is_variance { part * part } else { part } * f64::from(x);
                     }
                 }

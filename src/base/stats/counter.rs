@@ -45,14 +45,14 @@ impl Default for Observations {
 
 impl Observations {
     /// Creates the summary of one observation.
-    pub fn of(value: u64) -> Observations {
+    pub fn one(value: u64) -> Observations {
         Observations { count: 1, sum: value, min: value, max: value }
     }
 
     /// Adds one observation.
     #[inline]
     pub fn observe(&mut self, value: u64) {
-        self.merge(&Observations::of(value));
+        self.merge(&Observations::one(value));
     }
 
     /// Adds all observations of `other`.
@@ -94,8 +94,8 @@ mod tests {
     fn an_empty_distribution_is_neutral() {
         let mut d = Observations::default();
         assert_eq!(d.mean(), 0.0);
-        d.merge(&Observations::of(7));
+        d.merge(&Observations::one(7));
         d.merge(&Observations::default());
-        assert_eq!(d, Observations::of(7));
+        assert_eq!(d, Observations::one(7));
     }
 }

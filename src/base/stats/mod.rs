@@ -47,7 +47,7 @@ impl Stats {
 
     /// Adds one observation to the summary `name`, which reports count, mean, minimum and maximum.
     pub fn observe(&mut self, name: &str, value: u64) {
-        self.combine(name, Counter::Distribution(Observations::of(value)));
+        self.combine(name, Counter::Distribution(Observations::one(value)));
     }
 
     /// Adds a summary of observations to the summary `name`.

@@ -57,7 +57,7 @@ impl Groups {
             .zip(&self.groups)
             .map(|(meshes, group)| PlacedGroup { meshes, placements: &group.1 })
             .collect();
-        Accel::build_placed(device, &own, &groups, BuildQuality::default()).unwrap()
+        Accel::build_placed(device, &own, &groups).unwrap()
     }
 
     /// Returns all meshes at all places, in the order of their numbers.
@@ -154,11 +154,11 @@ fn damaged_groups_are_refused_and_empty_ones_stay_empty() {
     let positions = [Vec3::ZERO, Vec3::X, Vec3::Y];
     let bad = [TriangleMesh { positions: &positions, triangles: &[[0, 1, 3]], occludes: true }];
     let group = PlacedGroup { meshes: &bad, placements: &[Placement::IDENTITY] };
-    let refused = Accel::build_placed(&device, &[], &[group], BuildQuality::default());
+    let refused = Accel::build_placed(&device, &[], &[group]);
     assert!(matches!(refused, Err(EmbreeError::VertexIndex { index: 3, .. })));
     let good = [TriangleMesh { positions: &positions, triangles: &[[0, 1, 2]], occludes: true }];
     for (meshes, placements) in [(&good[..], &[][..]), (&[], &[Placement::IDENTITY])] {
         let group = PlacedGroup { meshes, placements };
-        assert!(Accel::build_placed(&device, &[], &[group], BuildQuality::default()).unwrap().is_empty());
+        assert!(Accel::build_placed(&device, &[], &[group]).unwrap().is_empty());
     }
 }

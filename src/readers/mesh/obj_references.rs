@@ -93,7 +93,7 @@ fn split_files(
 /// Definitions of material libraries by what their names may be.
 #[derive(Debug, Default)]
 pub(crate) struct Definitions {
-    whole: BTreeMap<String, usize>,
+    names: BTreeMap<String, usize>,
     /// Names before a `#` that nothing tells to be a comment; `None` if several definitions may have the name.
     short: BTreeMap<String, Option<usize>>,
     count: usize,
@@ -107,7 +107,7 @@ impl Definitions {
             let number = self.count;
             self.count += 1;
             for name in [text.to_owned(), name(text.as_bytes())] {
-                let known = self.whole.entry(name).or_insert(number);
+                let known = self.names.entry(name).or_insert(number);
                 *known = if *known < first { *known } else { number };
             }
             for name in readings(text.as_bytes()).into_iter().skip(1).filter(|name| !name.is_empty()) {
@@ -122,7 +122,7 @@ impl Definitions {
     /// The longest name that is defined counts.
     pub fn find(&self, text: &str) -> Option<(String, usize)> {
         readings(text.as_bytes()).into_iter().find_map(|name| {
-            let number = self.whole.get(&name).copied().or_else(|| self.short.get(&name).copied().flatten());
+            let number = self.names.get(&name).copied().or_else(|| self.short.get(&name).copied().flatten());
             Some((name, number?))
         })
     }

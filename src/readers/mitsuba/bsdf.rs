@@ -173,7 +173,7 @@ impl Converter<'_> {
         let named = if normals { self.document.named(bsdf, "normalmap")? } else { None };
         let texture = match named {
             Some(texture) => Some(texture),
-            None => self.only(bsdf, "texture")?,
+            None => self.first(bsdf, "texture")?,
         };
         let scale = bsdf.float("scale")?.unwrap_or(1.0) as f32;
         // Only Mitsuba 3 has these rules.
@@ -231,9 +231,9 @@ impl Converter<'_> {
             parts.push((lost, diffuse(bsdf.plugin.clone(), Reflectance::BLACK)));
         }
         // Parts are blended from the last to the first: each with the mixture of all later parts.
-        let mut whole: Option<(f64, Material)> = None;
+        let mut mixture: Option<(f64, Material)> = None;
         for (weight, part) in parts.into_iter().filter(|(weight, _)| *weight > 0.0).rev() {
-            whole = Some(match whole {
+            mixture = Some(match mixture {
                 None => (weight, part),
                 Some((rest, others)) => {
                     let sum = weight + rest;
@@ -242,14 +242,14 @@ impl Converter<'_> {
                 }
             });
         }
-        let Some((_, mixed)) = whole else {
+        let Some((_, mixed)) = mixture else {
             return Err(bsdf.place.wrong("all weights are 0", "give at least one weight above 0"));
         };
         Ok(mixed)
     }
 
     fn nested(&mut self, bsdf: &Object, depth: u32) -> Result<Material, SceneError> {
-        let Some(first) = self.only(bsdf, "bsdf")? else {
+        let Some(first) = self.first(bsdf, "bsdf")? else {
             let what = format!("the bsdf \"{}\" holds no other", bsdf.plugin);
             return Err(bsdf.place.wrong(what, "nest a <bsdf> or a <ref> to one"));
         };

@@ -100,7 +100,7 @@ impl Converter<'_> {
     }
 
     /// Returns the child of `object` with tag `tag`; the first one, with a warning, if there are several.
-    pub fn only(&mut self, object: &Object, tag: &str) -> Result<Option<Rc<Object>>, SceneError> {
+    pub fn first(&mut self, object: &Object, tag: &str) -> Result<Option<Rc<Object>>, SceneError> {
         let mut found = self.tagged(object, tag)?.into_iter();
         let first = found.next();
         if let Some(second) = found.next() {

@@ -28,7 +28,7 @@ pub(super) struct IntegratorSettings {
 impl Converter<'_> {
     /// Returns the settings of the scene's integrator.
     pub(super) fn integrator(&mut self) -> Result<IntegratorSettings, SceneError> {
-        match self.only(&self.document.root, "integrator")? {
+        match self.first(&self.document.root, "integrator")? {
             Some(integrator) => self.settings(&integrator, 0),
             None => Ok(IntegratorSettings::default()),
         }
@@ -75,7 +75,7 @@ impl Converter<'_> {
             let what = format!("the channels \"{channels}\" are not supported");
             self.log.warn(&wrapper.place, what, "they are not written")?;
         }
-        match self.only(wrapper, "integrator")? {
+        match self.first(wrapper, "integrator")? {
             Some(nested) => self.settings(&nested, depth + 1),
             None => {
                 let what = format!("the integrator \"{}\" nests no other", wrapper.plugin);

@@ -95,7 +95,7 @@ impl Converter<'_> {
 
     /// Names what a sampler says besides noise. `--spp` gives the number of samples.
     fn sampler(&mut self, sensor: &Object) -> Result<(), SceneError> {
-        let Some(sampler) = self.only(sensor, "sampler")? else { return Ok(()) };
+        let Some(sampler) = self.first(sensor, "sampler")? else { return Ok(()) };
         if fate_of_plugin("sampler", &sampler.plugin) != Fate::NoEffect {
             let what = format!("the sampler \"{}\" is not known", sampler.plugin);
             return self.log.warn(&sampler.place, what, "it is left out");
@@ -138,7 +138,7 @@ impl Converter<'_> {
     }
 
     fn film(&mut self, sensor: &Object) -> Result<SensorFilm, SceneError> {
-        let Some(film) = self.only(sensor, "film")? else {
+        let Some(film) = self.first(sensor, "film")? else {
             return Ok(SensorFilm { resolution: [768, 576], crop: None, filter: PixelFilter::GAUSSIAN });
         };
         if fate_of_plugin("film", &film.plugin) != Fate::Read {
@@ -159,9 +159,9 @@ impl Converter<'_> {
         };
         let resolution = [size("width", 768)?, size("height", 576)?];
         let names = ["crop_offset_x", "crop_offset_y", "crop_width", "crop_height"];
-        let whole = [0, 0, resolution[0], resolution[1]];
-        let mut crop = whole;
-        for ((name, default), value) in names.into_iter().zip(whole).zip(&mut crop) {
+        let all = [0, 0, resolution[0], resolution[1]];
+        let mut crop = all;
+        for ((name, default), value) in names.into_iter().zip(all).zip(&mut crop) {
             let number = film.integer(name)?.unwrap_or(default.into());
             let what =
                 || film.place.wrong(format!("the film's {name} is {number}"), "give pixels of the film");
@@ -175,8 +175,8 @@ impl Converter<'_> {
             let what = "the film's crop is empty or not on the film";
             return Err(film.place.wrong(what, "keep crop_offset + crop size within the film's size"));
         }
-        let crop = (crop != whole).then_some([[x, y], [width, height]]);
-        let filter = match self.only(&film, "rfilter")? {
+        let crop = (crop != all).then_some([[x, y], [width, height]]);
+        let filter = match self.first(&film, "rfilter")? {
             Some(filter) => self.filter(&filter)?,
             None => PixelFilter::GAUSSIAN,
         };

@@ -123,7 +123,7 @@ impl Converter<'_> {
 
     fn mesh(&mut self, shape: &Object, outer: DMat4) -> Result<(), SceneError> {
         let Some((geometry, v_down)) = self.geometry(shape)? else { return Ok(()) };
-        let emission = match self.only(shape, "emitter")? {
+        let emission = match self.first(shape, "emitter")? {
             Some(emitter) => self.area_emitter(&emitter)?,
             None => None,
         };
@@ -131,7 +131,7 @@ impl Converter<'_> {
             let what = format!("the sensor \"{}\" of a shape is not supported", sensor.plugin);
             self.log.warn(&sensor.place, what, "it is left out")?;
         }
-        let bsdf = self.only(shape, "bsdf")?;
+        let bsdf = self.first(shape, "bsdf")?;
         let material = self.material_of_shape(bsdf.as_ref(), emission.is_some())?;
         let of_emission = emission.and_then(|emission| emission.texture);
         let textured =

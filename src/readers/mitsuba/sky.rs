@@ -59,16 +59,16 @@ impl Converter<'_> {
     fn sun_of_date(&self, emitter: &Object) -> Result<DVec3, SceneError> {
         let default = Moment::default();
         let number = |name: &str, default: f64| Ok(emitter.float(name)?.unwrap_or(default));
-        let whole = |name: &str, default: i64| {
+        let integer = |name: &str, default: i64| {
             let value = emitter.integer(name)?.unwrap_or(default);
             let wrong = || emitter.place.wrong(format!("{name} is {value}"), "give one between 0 and 9999");
             if (0..=9999).contains(&value) { Ok(value) } else { Err(wrong()) }
         };
         let minutes = number("minute", 0.0)? + number("second", 0.0)? / 60.0;
         let moment = Moment {
-            year: whole("year", default.year)?,
-            month: whole("month", default.month)?,
-            day: whole("day", default.day)?,
+            year: integer("year", default.year)?,
+            month: integer("month", default.month)?,
+            day: integer("day", default.day)?,
             hours: number("hour", default.hours)? + minutes / 60.0,
             timezone: number("timezone", default.timezone)?,
         };

@@ -128,7 +128,7 @@ impl Converter<'_> {
                 };
                 let scale = if object.plugin == "d65" { object.float("scale")?.unwrap_or(1.0) } else { 1.0 };
                 let colour = value.unwrap_or(Rgb::ONE) * scale as f32;
-                match self.only(object, "texture")?.filter(|_| object.plugin == "d65") {
+                match self.first(object, "texture")?.filter(|_| object.plugin == "d65") {
                     Some(nested) => self.texture(&nested, depth + 1)?.times(colour),
                     None => Reflectance::Constant(colour),
                 }
@@ -174,7 +174,7 @@ impl Converter<'_> {
             Ok(Some(v)) => Rgb::splat(v as f32),
             _ => self.colour(object, "scale")?.unwrap_or(Rgb::ONE),
         };
-        let Some(nested) = self.only(object, "texture")? else {
+        let Some(nested) = self.first(object, "texture")? else {
             return Err(object.place.wrong("nothing to scale", "nest a <texture>"));
         };
         Ok(match self.texture(&nested, depth + 1)? {

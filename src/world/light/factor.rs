@@ -70,8 +70,8 @@ impl EmissionFactor {
             None => b,
         };
         let attribute = |id| {
-            let found = self.attributes.iter().find(|(own, _)| *own == id);
-            let corners = found.and_then(|(_, corners)| corners.get(triangle as usize));
+            let own = self.attributes.iter().find(|(own, _)| *own == id);
+            let corners = own.and_then(|(_, corners)| corners.get(triangle as usize));
             corners.map_or(Rgb::ONE, |corners| interpolated(*corners, b))
         };
         let colour = self.colour.map_or(Rgb::ONE, |id| self.textures.lookup(id, uv, attribute));

@@ -57,7 +57,7 @@ impl ImageLight {
                 let SpotImage { texture, to_local } = image;
                 let half = Vec2::splat(outer_angle.tan());
                 let cone = Some([inner_angle, outer_angle]);
-                Some(ImageLight::of(Some(texture), textures, (to_local, half), cone, intensity))
+                Some(ImageLight::build(Some(texture), textures, (to_local, half), cone, intensity))
             }
             DeltaLight::Projector { projector, .. } => {
                 let Projector { intensity, texture, to_local, .. } = projector;
@@ -66,13 +66,13 @@ impl ImageLight {
                 let (width, height) = size.unwrap_or((1.0, 1.0));
                 let tan_x = projector.tan_half_x(width / height);
                 let half = Vec2::new(tan_x, tan_x * height / width);
-                Some(ImageLight::of(texture, textures, (to_local, half), None, intensity))
+                Some(ImageLight::build(texture, textures, (to_local, half), None, intensity))
             }
             _ => None,
         }
     }
 
-    fn of(
+    fn build(
         texture: Option<TextureId>,
         textures: &Textures,
         (to_local, half): (Mat3, Vec2),

@@ -117,16 +117,16 @@ impl Emitters {
         samples: &mut DirectSamples16,
     ) {
         let Some(environment) = &self.environment else { return };
-        let found = environment.sample16(u, wanted, at.sky());
+        let sky = environment.sample16(u, wanted, at.sky());
         let mask = Mask16::of(wanted);
-        samples.direction.put(mask, found.direction.load());
-        samples.radiance.put(mask, found.radiance.load());
+        samples.direction.put(mask, sky.direction.load());
+        samples.radiance.put(mask, sky.radiance.load());
         samples.normal.put(mask, V3::splat(Vec3::ZERO));
         mask.put(&mut samples.distance, &[f32::INFINITY; LANES]);
         let (mut pdf, mut useful) = ([0.0; LANES], [0; LANES]);
         for i in 0..LANES {
-            pdf[i] = choice[i] * found.pdf[i];
-            useful[i] = u32::from(found.pdf[i] > 0.0);
+            pdf[i] = choice[i] * sky.pdf[i];
+            useful[i] = u32::from(sky.pdf[i] > 0.0);
         }
         mask.put(&mut samples.pdf, &pdf);
         mask.put_u32(&mut samples.useful, &useful);

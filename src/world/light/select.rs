@@ -134,8 +134,8 @@ impl EmitterChoice {
             let point = PointAndNormal { x: at.position.get(lane), n: at.normal.get(lane) };
             let within = within[lane].min(1.0 - f32::EPSILON);
             let factors = factors.map(|factors| factors[lane]);
-            let found = self.tree.sample(chosen[lane] as usize, point, factors, within);
-            let (emitter, probability) = found.unwrap_or_default();
+            let sample = self.tree.sample(chosen[lane] as usize, point, factors, within);
+            let (emitter, probability) = sample.unwrap_or_default();
             emitters[lane] = emitter;
             choice[lane] *= probability;
         }

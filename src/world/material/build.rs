@@ -94,10 +94,10 @@ impl<'a> Builder<'a> {
 
     /// Builds a material.
     pub fn entry(&mut self, material: &Material, id: MaterialId) -> MaterialEntry {
-        let levels = RoughnessLevels::of(material, self.scene);
+        let levels = RoughnessLevels::new(material, self.scene);
         let (mut model, source) = self.model(material, id, None);
         model.mean_roughness = levels.is_some();
-        let mean = |id: TextureId| self.means.of(id);
+        let mean = |id: TextureId| self.means.mean(id);
         let average = source.colours(&model.base, &mean);
         let textures = source.textures(&model.base);
         let is_textured = levels.is_some() || source.is_textured();
@@ -177,7 +177,7 @@ impl<'a> Builder<'a> {
             coat: number(&mut self.coats, &base.interface),
             base,
             lobe_list: number(&mut self.lobe_lists, &(lobes.clone(), shadows)),
-            kinds: LobeKinds::of(&lobes),
+            kinds: LobeKinds::new(&lobes),
             lambert: bare && lobes.is_empty() && !shadows,
             min_alpha: lobes.iter().map(LobeModel::min_alpha).fold(1.0, f32::min),
             lobes,

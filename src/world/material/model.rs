@@ -69,7 +69,7 @@ pub(super) struct LobeKinds {
 
 impl LobeKinds {
     /// Collects the properties of a list of lobes.
-    pub fn of(lobes: &[LobeModel]) -> LobeKinds {
+    pub fn new(lobes: &[LobeModel]) -> LobeKinds {
         let any = |property: fn(&LobeModel) -> bool| lobes.iter().any(property);
         let transmit = any(LobeModel::transmits);
         let across = transmit || any(|lobe| matches!(lobe, LobeModel::Thin(_)));

@@ -69,7 +69,7 @@ struct PrincipledValues {
 
 impl PrincipledValues {
     /// Evaluates the parameters; `texel` returns the value of a texture.
-    fn of(p: &Principled, texel: impl Fn(TextureId) -> Rgb) -> PrincipledValues {
+    fn new(p: &Principled, texel: impl Fn(TextureId) -> Rgb) -> PrincipledValues {
         let share = |share: &Share| share.value(|id| luminance(texel(id))).clamp(0.0, 1.0);
         let colour = p.base_color.value(&texel).max(Rgb::ZERO);
         let brightness = luminance(colour);
@@ -215,7 +215,7 @@ impl LobeBuilder<'_> {
         let is_constant =
             !p.base_color.is_textured() && !p.metallic.is_textured() && !p.spec_tint.is_textured();
         if has_hue && is_constant {
-            let values = PrincipledValues::of(p, |_| Rgb::ONE);
+            let values = PrincipledValues::new(p, |_| Rgb::ONE);
             let (normal, edge) = (values.hued_normal(p.eta), values.hued_edge());
             all.push((PrincipledLobe::Hued, self.rough(Fresnel::Schlick { normal, edge })));
         } else if has_hue {
@@ -298,7 +298,7 @@ impl PrincipledColours {
 
     /// Returns the albedo of the base and the factors on the lobes; `texel` returns the value of a texture.
     pub fn colours(&self, texel: impl Fn(TextureId) -> Rgb) -> Colours<Rgb> {
-        let values = PrincipledValues::of(&self.parameters, texel);
+        let values = PrincipledValues::new(&self.parameters, texel);
         let mut scales = [Rgb::ZERO; MAX_LOBES];
         for (scale, lobe) in scales.iter_mut().zip(&self.lobes) {
             *scale = values.factor(*lobe, self.parameters.eta);

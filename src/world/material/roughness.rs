@@ -60,7 +60,7 @@ struct TextureLevels {
 impl TextureLevels {
     /// Returns the levels of a texture at a distance of `step`, or its texels if they are few and not interpolated;
     /// `None` if there is no such texture.
-    fn of(texture: TextureId, scene: &Scene, step: i32) -> Option<TextureLevels> {
+    fn new(texture: TextureId, scene: &Scene, step: i32) -> Option<TextureLevels> {
         let is_exact = |image: &&Texture| {
             image.filter == Filter::Nearest && image.texels.len() <= LEVELS_PER_OCTAVE as usize
         };
@@ -101,7 +101,7 @@ pub(super) type LevelPair = Vec<(TextureId, RoughnessLevel)>;
 
 impl RoughnessLevels {
     /// Returns the levels of the first part of `material` whose roughness is textured, if there is any.
-    pub fn of(material: &Material, scene: &Scene) -> Option<RoughnessLevels> {
+    pub fn new(material: &Material, scene: &Scene) -> Option<RoughnessLevels> {
         let of_lobe = |lobe: &Lobe| match lobe {
             Lobe::Rough { alpha, .. } | Lobe::RoughDielectric { alpha, .. } => textures(&[*alpha]),
             Lobe::Anisotropic { alpha, .. } => textures(alpha),
@@ -112,7 +112,7 @@ impl RoughnessLevels {
             None => part.lobes.iter().find_map(of_lobe),
         };
         let (first, second) = material.parts().find_map(of_part)?;
-        let levels = |texture, step| TextureLevels::of(texture, scene, step);
+        let levels = |texture, step| TextureLevels::new(texture, scene, step);
         // Levels of two textures are wider, so that there are few enough pairs.
         let mut step = MIN_STEP;
         while let Some(second) = second.and_then(|second| levels(second, step)) {
@@ -182,7 +182,7 @@ impl RoughnessValues<'_> {
     fn alpha_at(&self, roughness: &Roughness, level: impl Fn(RoughnessLevel) -> RoughnessLevel) -> f32 {
         roughness.value(|texture| {
             let known = self.levels.and_then(|levels| levels.iter().find(|(known, _)| *known == texture));
-            known.map_or_else(|| luminance(self.means.of(texture)), |(_, found)| level(*found).0)
+            known.map_or_else(|| luminance(self.means.mean(texture)), |(_, found)| level(*found).0)
         })
     }
 }
@@ -208,7 +208,7 @@ impl TextureMeans {
     }
 
     /// Returns the mean of a texture; white if there is no such texture.
-    pub fn of(&self, id: TextureId) -> Rgb {
+    pub fn mean(&self, id: TextureId) -> Rgb {
         let found = self.images.get(id.0 as usize).or_else(|| self.attributes.get(id.attribute_number()?));
         found.copied().unwrap_or(Rgb::ONE)
     }
@@ -229,7 +229,8 @@ mod tests {
         let alpha = ids.map(|texture| Roughness::Textured { texture, scale: 1.0 });
         let (distribution, fresnel, scale) = (Distribution::Ggx, Fresnel::One, Rgb::ONE.into());
         let lobes = vec![Lobe::Anisotropic { distribution, alpha, fresnel, scale }];
-        let levels = RoughnessLevels::of(&Material { lobes, ..Material::default() }, &scene).expect("levels");
+        let levels =
+            RoughnessLevels::new(&Material { lobes, ..Material::default() }, &scene).expect("levels");
         let all: Vec<LevelPair> = levels.all().collect();
         assert_eq!(all.len(), 4);
         for wanted in [[0.3, 0.05], [0.05, 0.3], [0.3, 0.3], [0.05, 0.05]] {
@@ -250,7 +251,7 @@ mod tests {
             let (distribution, fresnel, scale) = (Distribution::Ggx, Fresnel::One, Rgb::ONE.into());
             let lobes = vec![Lobe::Anisotropic { distribution, alpha, fresnel, scale }];
             let levels =
-                RoughnessLevels::of(&Material { lobes, ..Material::default() }, &scene).expect("levels");
+                RoughnessLevels::new(&Material { lobes, ..Material::default() }, &scene).expect("levels");
             let all: Vec<LevelPair> = levels.all().collect();
             assert!(all.len() <= MAX_PAIRS, "{}", all.len());
             for (i, j) in [(0, 0), (63, 63), (5, 40), (63, 1), (31, 33)] {

@@ -110,7 +110,7 @@ impl OccluderCache {
     fn search<const W: usize>(&self, slot: usize, ray: &Ray) -> Option<Occluder> {
         let rows = &self.triangles[slot * W * ROWS..][..W * ROWS];
         let ids = &self.ids[slot * W..][..W];
-        let extent = RayExtent::of(ray);
+        let extent = RayExtent::new(ray);
         let mut hits = [false; W];
         let mut t = [0.0; W];
         for w in 0..W {
@@ -188,7 +188,7 @@ struct RayExtent {
 impl RayExtent {
     /// Measures a ray.
     #[inline(always)]
-    fn of(ray: &Ray) -> RayExtent {
+    fn new(ray: &Ray) -> RayExtent {
         let larger = |a: f32, b: f32| if a > b { a } else { b };
         let largest = |v: Vec3| larger(v.x.abs(), larger(v.y.abs(), v.z.abs()));
         RayExtent { origin: largest(ray.origin), direction: largest(ray.direction) }

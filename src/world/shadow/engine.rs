@@ -71,13 +71,13 @@ impl<'w> Engine<'w> {
     #[inline]
     pub fn occluder(&self, ray: &Ray, key: u32) -> Option<Occluder> {
         let cached = self.cache.as_ref().and_then(|cache| cache.borrow().occluder(key, ray));
-        let found = cached.or_else(|| self.world.accel.occluder(ray));
-        if let (Some(cache), None, Some(occluder)) = (&self.cache, cached, found) {
-            let (corner, edges) = self.world.corner_and_edges(occluder.id());
-            cache.borrow_mut().keep(key, occluder.id(), corner, edges);
+        let occluder = cached.or_else(|| self.world.accel.occluder(ray));
+        if let (Some(cache), None, Some(new)) = (&self.cache, cached, occluder) {
+            let (corner, edges) = self.world.corner_and_edges(new.id());
+            cache.borrow_mut().keep(key, new.id(), corner, edges);
         }
-        self.counters.single.count(1, u32::from(found.is_some()), u32::from(cached.is_some()));
-        found
+        self.counters.single.count(1, u32::from(occluder.is_some()), u32::from(cached.is_some()));
+        occluder
     }
 
     /// Returns the lanes of `valid` whose rays are occluded. All rays go to one light.

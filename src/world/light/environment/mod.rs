@@ -256,9 +256,9 @@ impl EnvironmentLight {
             samples.pdf[i] *= densities[i];
         }
         if on_discs != 0 {
-            let found = self.radiance_pdf16(&samples.direction, on_discs, learned);
+            let discs = self.radiance_pdf16(&samples.direction, on_discs, learned);
             for i in lanes_in(on_discs) {
-                samples.set(i, samples.direction.get(i), found[i].0, found[i].1);
+                samples.set(i, samples.direction.get(i), discs[i].0, discs[i].1);
             }
         }
         for i in 0..LANES {

@@ -102,7 +102,7 @@ impl Tiles {
             rows.map(|row| f64::from(grid.flux(row, &columns))).sum()
         };
         let heights: Vec<f32> = (0..=size[1]).map(|row| grid.height(row)).collect();
-        let sums_of = |i: usize| Sums::of(grid, &heights, &cells_of(i));
+        let sums_of = |i: usize| Sums::new(grid, &heights, &cells_of(i));
         let numbers = (0..blocks[0] * blocks[1]).into_par_iter();
         let (flux, sums): (Vec<f64>, Vec<Sums>) = numbers.map(|i| (flux_of(i), sums_of(i))).unzip();
         let parts = cut(&flux, blocks);
@@ -211,7 +211,7 @@ struct Sums([f64; 3]);
 
 impl Sums {
     /// Sums over cells; `heights` are the borders of the rows.
-    fn of(grid: &impl Grid, heights: &[f32], [columns, rows]: &[Range<usize>; 2]) -> Sums {
+    fn new(grid: &impl Grid, heights: &[f32], [columns, rows]: &[Range<usize>; 2]) -> Sums {
         let mut sums = [0.0; 3];
         for row in rows.clone() {
             let weight = f64::from(heights[row] - heights[row + 1]).max(0.0);

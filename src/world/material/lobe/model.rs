@@ -345,8 +345,8 @@ fn sample_across<L: Lane>(
     sample: impl Fn(Vec3, Vec2) -> Option<Vec3>,
 ) -> (Facet<L>, L::Mask) {
     let wi = V3::from_fn(|lane| {
-        let found = || sample(wo.lane(lane), Vec2::new(x.lane(lane), y.lane(lane)));
-        if wanted.lane(lane) { found().unwrap_or_default() } else { Vec3::ZERO }
+        let sampled = || sample(wo.lane(lane), Vec2::new(x.lane(lane), y.lane(lane)));
+        if wanted.lane(lane) { sampled().unwrap_or_default() } else { Vec3::ZERO }
     });
     (Facet::between(wo, wi), wi.length_sq().is_positive())
 }
