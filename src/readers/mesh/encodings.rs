@@ -5,13 +5,14 @@
 
 use encoding_rs::{BIG5, EUC_KR, Encoding, GBK, SHIFT_JIS, WINDOWS_1250, WINDOWS_1251, WINDOWS_1252};
 use std::ffi::OsString;
+use std::iter;
 use std::path::{Path, PathBuf};
 
 /// Code pages in which a name is sought on the disk and in scenes.
 const CODE_PAGES: [&Encoding; 7] = [WINDOWS_1252, WINDOWS_1251, WINDOWS_1250, GBK, SHIFT_JIS, BIG5, EUC_KR];
 
 /// Returns the name that has these bytes.
-pub(super) fn text(bytes: &[u8]) -> String {
+pub(crate) fn text(bytes: &[u8]) -> String {
     match std::str::from_utf8(bytes) {
         Ok(text) => text.to_owned(),
         Err(_) => WINDOWS_1252.decode_without_bom_handling(bytes).0.into_owned(),
@@ -25,7 +26,7 @@ fn code_page_bytes(name: &str) -> Option<Vec<u8>> {
 }
 
 /// Returns the name, and what it may be in other encodings than that of [`text`].
-pub(crate) fn spellings(name: &str) -> Vec<String> {
+pub(super) fn spellings(name: &str) -> Vec<String> {
     let mut all = vec![name.to_owned()];
     let Some(bytes) = code_page_bytes(name) else { return all };
     for page in CODE_PAGES {
@@ -37,9 +38,25 @@ pub(crate) fn spellings(name: &str) -> Vec<String> {
     all
 }
 
+/// Returns the path of the file that a statement in `folder` names, if there is one.
+///
+/// A file beside the statement's is used instead of one in a folder that does not exist, as of another machine.
+pub(crate) fn existing_file(folder: &Path, name: &str) -> Option<PathBuf> {
+    let name = name.trim_matches('"');
+    let beside =
+        spellings(name).into_iter().filter_map(|name| Some(name.rsplit(['/', '\\']).next()?.to_owned()));
+    let names = iter::once(name.to_owned()).chain(beside);
+    names.flat_map(|name| possible_paths(folder, &name)).find(|path| path.is_file())
+}
+
+/// Returns the path of a file that a statement in `folder` names, and that is not there.
+pub(crate) fn missing_file(folder: &Path, name: &str) -> PathBuf {
+    folder.join(name.trim_matches('"').replace('\\', "/"))
+}
+
 /// Returns the paths in `folder` that a name may mean, the likely ones first: the name itself with the separators of
 /// either system, and its spellings in other encodings, as text and as bytes.
-pub(crate) fn possible_paths(folder: &Path, name: &str) -> Vec<PathBuf> {
+fn possible_paths(folder: &Path, name: &str) -> Vec<PathBuf> {
     let mut paths = vec![folder.join(name.replace('\\', "/")), folder.join(name)];
     if !name.is_ascii() {
         let bytes = code_page_bytes(name).map(os_string);

@@ -85,18 +85,18 @@ impl Faults {
 }
 
 /// Greatest code of a colour in eight bits.
-pub(super) const MAX_CODE: f64 = 255.0;
+pub(crate) const MAX_CODE: f64 = 255.0;
 
 /// Greatest channel up to which whole numbers may be radiance.
 const MAX_RADIANCE: f64 = 16.0;
 
 /// True if colours whose greatest channel is `most` go up to 255, if all are whole numbers.
-pub(super) fn are_codes(most: f64, are_whole: bool) -> bool {
+pub(crate) fn are_codes(most: f64, are_whole: bool) -> bool {
     are_whole && most > MAX_RADIANCE && most <= MAX_CODE
 }
 
 /// Returns the note that colours of numbers that are not bytes go up to 255.
-pub(super) fn note_of_codes(place: Location) -> Warning {
+pub(crate) fn note_of_codes(place: Location) -> Warning {
     let what = "the colours are whole numbers up to 255";
     let fallback = "they count as 0 to 255, coded in sRGB";
     Warning { severity: Severity::Note, ..Warning::new(place, what, fallback) }

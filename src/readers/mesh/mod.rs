@@ -11,11 +11,9 @@
 mod chains;
 mod edge_order;
 pub(crate) mod encodings;
-mod faults;
+pub(crate) mod faults;
 mod large_polygon;
-pub mod map_options;
 pub mod material_parts;
-pub mod mtl;
 mod numerals;
 pub mod obj;
 pub mod obj_references;

@@ -8,14 +8,14 @@ use super::numerals::{self, is_in_number};
 use std::borrow::Cow;
 
 /// Iterator over statements, with the number of each one's first line, counted from 1.
-pub(super) struct Statements<'a, L> {
+pub(crate) struct Statements<'a, L> {
     lines: L,
     number: u32,
     text: std::marker::PhantomData<&'a [u8]>,
 }
 
 /// Returns the statements of the text `bytes`, without white space around them.
-pub(super) fn statements(bytes: &[u8]) -> Statements<'_, impl Iterator<Item = &[u8]>> {
+pub(crate) fn statements(bytes: &[u8]) -> Statements<'_, impl Iterator<Item = &[u8]>> {
     Statements { lines: lines(bytes), number: 0, text: std::marker::PhantomData }
 }
 
@@ -67,18 +67,18 @@ fn comments(text: &[u8]) -> impl Iterator<Item = usize> {
 }
 
 /// Returns the first word of a statement, and the rest.
-pub(super) fn split_word(statement: &[u8]) -> (&[u8], &[u8]) {
+pub(crate) fn split_word(statement: &[u8]) -> (&[u8], &[u8]) {
     let end = statement.iter().position(|b| b.is_ascii_whitespace()).unwrap_or(statement.len());
     statement.split_at(end)
 }
 
 /// Returns the words of a text.
-pub(super) fn words(text: &[u8]) -> impl Iterator<Item = &[u8]> {
+pub(crate) fn words(text: &[u8]) -> impl Iterator<Item = &[u8]> {
     text.split(|b| b.is_ascii_whitespace()).filter(|word| !word.is_empty())
 }
 
 /// Returns the words of a text without a comment, which begins at any `#` outside a number.
-pub(super) fn values(text: &[u8]) -> impl Iterator<Item = &[u8]> {
+pub(crate) fn values(text: &[u8]) -> impl Iterator<Item = &[u8]> {
     let mut marks = (0..text.len()).filter(|&i| text[i] == b'#');
     let end = marks.find(|&i| !is_in_number(text, i)).unwrap_or(text.len());
     words(&text[..end])
@@ -104,13 +104,13 @@ pub(crate) fn name(rest: &[u8]) -> String {
 }
 
 /// Returns a word for a message: its first characters, those that are not UTF-8 replaced.
-pub(super) fn shown(word: &[u8]) -> String {
+pub(crate) fn shown(word: &[u8]) -> String {
     const MAX_SHOWN: usize = 24;
     String::from_utf8_lossy(&word[..word.len().min(MAX_SHOWN)]).into_owned()
 }
 
 /// Parses the first `N` numbers of a text, which may be infinite or NaN. Further words are ignored.
-pub(super) fn numbers<const N: usize>(rest: &[u8]) -> Result<[f64; N], String> {
+pub(crate) fn numbers<const N: usize>(rest: &[u8]) -> Result<[f64; N], String> {
     let mut values = [0.0; N];
     let mut words = self::values(rest);
     for value in &mut values {

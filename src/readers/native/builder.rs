@@ -10,7 +10,7 @@ use crate::plan::Contents;
 use lightsplat_scenes::Part;
 use scene::MaterialId;
 use std::collections::BTreeMap;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use toml::Spanned;
 
 /// A plan under construction. The other modules add cameras, materials, meshes and lights.
@@ -58,6 +58,13 @@ impl<'a> SceneBuilder<'a> {
             groups: NamedGroups::default(),
             contents: Contents::default(),
         })
+    }
+
+    /// Adds a file of a model or a material, with its hash.
+    pub fn add_source(&mut self, path: &Path, hash: u64) {
+        if !self.sources.iter().any(|known| known.0 == path) {
+            self.sources.push((path.to_owned(), hash));
+        }
     }
 
     /// Returns the maximum path length, in edges.

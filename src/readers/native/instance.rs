@@ -61,9 +61,7 @@ impl SceneBuilder<'_> {
                     matrix(&numbers.unwrap_or_default(), &at)
                 };
                 let matrices = written.map(read).collect::<Result<Vec<_>, _>>()?;
-                if !self.sources.iter().any(|known| known.0 == path) {
-                    self.sources.push((path.clone(), hash));
-                }
+                self.add_source(&path, hash);
                 (matrices, Location::file(&path))
             }
         };

@@ -2,16 +2,17 @@
 
 use super::builder::SceneBuilder;
 use super::text::{ColourText, MeshText, NamesText, Number, ScaleText, StepText};
+use crate::attributes::COLOUR;
 use crate::error::{Location, SceneError};
 use crate::file::stem_of;
 use crate::gltf::{self, FRAMES_PER_SECOND, ImportOptions};
 use crate::mesh::{Normals, Placement, RawMesh, shapes};
 use crate::plan::{MaterialPlan, MeshPlan, MeshSource};
 use crate::selection::PartSelection;
-use base::math::unit;
+use base::math::{Rgb, unit};
 use glam::{DMat3, DMat4, DVec3};
 use lightsplat_scenes::Part;
-use scene::{Emission, MaterialId, Reflectance};
+use scene::{Emission, Material, MaterialId, Reflectance};
 use std::path::{Path, PathBuf};
 use toml::Spanned;
 
@@ -90,10 +91,8 @@ impl SceneBuilder<'_> {
             group: self.member_of(text, place),
         };
         let imported = gltf::import(path, place, &options, &mut self.contents, self.log)?;
-        for source in imported.sources {
-            if !self.sources.iter().any(|known| known.0 == source.0) {
-                self.sources.push(source);
-            }
+        for (path, hash) in imported.sources {
+            self.add_source(&path, hash);
         }
         self.model_shot = self.model_shot.take().or(imported.shot);
         Ok(())
@@ -189,6 +188,19 @@ impl SceneBuilder<'_> {
         let (named, has_colours) = self.read_mtl(path, place, unit as f32)?;
         let other = self.default_material(has_colours, place);
         Ok(MaterialPlan::ByName(named, other))
+    }
+
+    /// Returns the material of faces without one: diffuse, of the colours of the mesh if it has some, else grey.
+    pub(super) fn default_material(&mut self, has_colours: bool, place: &Location) -> MaterialId {
+        let diffuse = match has_colours {
+            true => {
+                let texture = self.contents.add_attribute(COLOUR, None);
+                Reflectance::Textured { texture, scale: Rgb::ONE }
+            }
+            false => Reflectance::Constant(Rgb::splat(0.5)),
+        };
+        let material = Material { name: "default".into(), two_sided: true, diffuse, ..Material::default() };
+        self.contents.add_material(material, place.clone())
     }
 }
 

@@ -4,8 +4,6 @@
 
 mod builder;
 mod camera;
-mod classic;
-mod classic_maps;
 mod colour;
 mod group;
 mod instance;
@@ -84,8 +82,6 @@ pub(super) fn read(path: &Path, log: &mut Log) -> Result<ScenePlan, SceneError> 
     })
 }
 
-#[cfg(test)]
-mod classic_tests;
 #[cfg(test)]
 mod page;
 #[cfg(test)]

@@ -3,28 +3,19 @@
 //! Options stand before or behind the name. Both the numbers of an option and the words of a name vary in number, so
 //! that reading counts of which the file exists.
 
-use super::wavefront::{name, readings};
+use crate::decode::Channel;
+use crate::mesh::wavefront::{name, readings};
 use crate::statements::{Fate, Statement, table};
+use glam::Vec2;
 use std::path::PathBuf;
-
-/// Channel of an image that a number comes from (`-imfchan`).
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum MapChannel {
-    Red,
-    Green,
-    Blue,
-    Matte,
-    Luminance,
-    Depth,
-}
 
 /// Options of a map.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct MapOptions {
+pub struct MapOptions {
     /// Added to u and v, behind the factors.
-    pub offset: [f32; 2],
+    pub offset: Vec2,
     /// Factors on u and v.
-    pub scale: [f32; 2],
+    pub scale: Vec2,
     pub clamp: bool,
     /// True if texels are interpolated along u, and along v.
     pub blend: [bool; 2],
@@ -32,28 +23,29 @@ pub(crate) struct MapOptions {
     pub levels: [f32; 2],
     /// Factor on a relief.
     pub bump: f32,
-    pub channel: Option<MapChannel>,
-    /// Options that are not supported, with what stands in.
-    pub unmodelled: Vec<(String, &'static str)>,
+    /// Channel of the image that a number comes from.
+    pub channel: Option<Channel>,
+    /// Options that are not supported, with what is used instead.
+    pub unsupported: Vec<(String, &'static str)>,
 }
 
 impl Default for MapOptions {
     fn default() -> MapOptions {
         MapOptions {
-            offset: [0.0; 2],
-            scale: [1.0; 2],
+            offset: Vec2::ZERO,
+            scale: Vec2::ONE,
             clamp: false,
             blend: [true; 2],
             levels: [0.0, 1.0],
             bump: 1.0,
             channel: None,
-            unmodelled: Vec::new(),
+            unsupported: Vec::new(),
         }
     }
 }
 
 /// A map: its file, or the name of one that does not exist, and options.
-pub(crate) type Map = (Result<PathBuf, String>, MapOptions);
+pub type Map = (Result<PathBuf, String>, MapOptions);
 
 /// Maximum number of ends of a name that are tried.
 const MAX_ENDS: usize = 8;
@@ -62,7 +54,7 @@ const MAX_ENDS: usize = 8;
 ///
 /// # Errors
 /// If a number is not finite.
-pub(crate) fn parse(text: &str, find: impl Fn(&str) -> Option<PathBuf>) -> Result<Option<Map>, String> {
+pub fn parse(text: &str, find: impl Fn(&str) -> Option<PathBuf>) -> Result<Option<Map>, String> {
     if let Some(path) = find(text) {
         return Ok(Some((Ok(path), MapOptions::default())));
     }
@@ -105,7 +97,7 @@ fn reading(text: &str, find: impl Fn(&str) -> Option<PathBuf>) -> Result<Option<
 }
 
 /// Returns the options of maps.
-pub(crate) fn options() -> &'static [Statement] {
+pub fn options() -> &'static [Statement] {
     table("Options of MTL maps")
 }
 
@@ -162,7 +154,7 @@ impl MapOptions {
         while let Some((word, behind)) = words.split_first() {
             words = behind;
             let Some(option) = option(word) else {
-                self.unmodelled.push((format!("the unknown option \"{word}\""), "it is left out"));
+                self.unsupported.push((format!("the unknown option \"{word}\""), "it is left out"));
                 continue;
             };
             let (arguments, behind) = behind.split_at(arguments(option, behind).1);
@@ -174,7 +166,7 @@ impl MapOptions {
 
     fn set(&mut self, option: &'static Statement, arguments: &[&str]) -> Result<(), String> {
         let Some(first) = arguments.first() else {
-            self.unmodelled.push((format!("the option {} without a value", option.name), "it is left out"));
+            self.unsupported.push((format!("the option {} without a value", option.name), "it is left out"));
             return Ok(());
         };
         let number = |i: usize, default: f32| match arguments.get(i).and_then(|word| word.parse::<f32>().ok())
@@ -184,8 +176,8 @@ impl MapOptions {
         };
         let is_on = !first.eq_ignore_ascii_case("off");
         match option.name {
-            "-s" => self.scale = [number(0, 1.0)?, number(1, 1.0)?],
-            "-o" => self.offset = [number(0, 0.0)?, number(1, 0.0)?],
+            "-s" => self.scale = Vec2::new(number(0, 1.0)?, number(1, 1.0)?),
+            "-o" => self.offset = Vec2::new(number(0, 0.0)?, number(1, 0.0)?),
             "-mm" => self.levels = [number(0, 0.0)?, number(1, 1.0)?],
             "-bm" => self.bump = number(0, 1.0)?,
             "-clamp" => self.clamp = is_on,
@@ -202,23 +194,17 @@ impl MapOptions {
             _ => option.fate == Fate::Named,
         };
         if has_effect {
-            let fallback = if option.fate == Fate::Named { option.note } else { "the luminance counts" };
-            self.unmodelled.push((format!("the option {} {}", option.name, arguments.join(" ")), fallback));
+            let fallback = if option.fate == Fate::Named { option.note } else { "it is left out" };
+            self.unsupported.push((format!("the option {} {}", option.name, arguments.join(" ")), fallback));
         }
         Ok(())
     }
 }
 
-fn channel(word: &str) -> Option<MapChannel> {
-    Some(match word.to_ascii_lowercase().as_str() {
-        "r" => MapChannel::Red,
-        "g" => MapChannel::Green,
-        "b" => MapChannel::Blue,
-        "m" => MapChannel::Matte,
-        "l" => MapChannel::Luminance,
-        "z" => MapChannel::Depth,
-        _ => return None,
-    })
+/// Returns a channel of an image by its letter.
+fn channel(letter: &str) -> Option<Channel> {
+    let position = "rgbm".find(&letter.to_ascii_lowercase()).filter(|_| letter.len() == 1);
+    position.map(Channel::One).or(letter.eq_ignore_ascii_case("l").then_some(Channel::Data))
 }
 
 #[cfg(test)]
@@ -245,8 +231,8 @@ mod tests {
         ] {
             let (found, options) = read(text).unwrap();
             assert_eq!(found, Ok(PathBuf::from(file)), "{text}");
-            assert_eq!((options.scale, options.offset), (scale, offset), "{text}");
-            assert!(options.unmodelled.is_empty(), "{options:?}");
+            assert_eq!((options.scale.to_array(), options.offset.to_array()), (scale, offset), "{text}");
+            assert!(options.unsupported.is_empty(), "{options:?}");
         }
     }
 
@@ -256,7 +242,7 @@ mod tests {
         assert_eq!(file, Err("no such.png".to_owned()));
         assert_eq!(
             (options.clamp, options.levels, options.channel),
-            (true, [0.1, 0.5], Some(MapChannel::Green))
+            (true, [0.1, 0.5], Some(Channel::One(1)))
         );
         for empty in ["", " # none", "-s 1 1 1"] {
             assert_eq!(read(empty), None, "{empty}");
@@ -264,7 +250,7 @@ mod tests {
     }
 
     #[test]
-    fn options_that_are_not_modelled_are_named_unless_they_change_nothing() {
+    fn options_that_are_not_supported_are_named_unless_they_change_nothing() {
         let value = |name: &str| match name {
             "-clamp" | "-blendu" | "-blendv" | "-cc" => "on",
             "-imfchan" => "r",
@@ -275,7 +261,7 @@ mod tests {
             let (file, options) = read(&format!("{} {} tile.png", option.name, value(option.name))).unwrap();
             assert!(file.is_ok());
             assert_eq!(
-                options.unmodelled.is_empty(),
+                options.unsupported.is_empty(),
                 option.fate != Fate::Named,
                 "{}: {options:?}",
                 option.name
@@ -286,7 +272,7 @@ mod tests {
             assert_eq!(options, MapOptions::default(), "{nothing}");
         }
         for named in ["-imfchan q tile.png", "-wild tile.png", "-s tile.png", "tile.png -t 1"] {
-            assert_eq!(read(named).unwrap().1.unmodelled.len(), 1, "{named}");
+            assert_eq!(read(named).unwrap().1.unsupported.len(), 1, "{named}");
         }
         assert!(parse("-s 1e99 tile.png", |_| None).is_err());
     }

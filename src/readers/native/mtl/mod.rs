@@ -1,19 +1,24 @@
-//! Material libraries of an OBJ file.
+//! Wavefront MTL, the material libraries of an OBJ file: `source` parses them, `material` and `maps` convert the
+//! materials, and `report` names what is not supported.
+
+mod maps;
+mod material;
+mod options;
+mod report;
+mod source;
+#[cfg(test)]
+mod tests;
 
 use super::builder::SceneBuilder;
-use super::classic::LibraryReader;
-use crate::attributes::COLOUR;
 use crate::error::{Location, SceneError};
 use crate::file::{fnv1a, folder_of, read_file};
-use crate::mesh::encodings::{possible_paths, spellings};
-use crate::mesh::mtl::{self, ClassicMaterial};
+use crate::mesh::encodings::existing_file;
 use crate::mesh::obj_references::{Definitions, References, listed_files, references};
 use crate::mesh::wavefront::name;
 use crate::plan::NamedAppearances;
-use base::math::Rgb;
-use scene::{Material, MaterialId, Reflectance};
+use report::LibraryReader;
+use source::SourceMaterial;
 use std::collections::{BTreeMap, BTreeSet};
-use std::iter;
 use std::path::{Path, PathBuf};
 
 impl SceneBuilder<'_> {
@@ -27,7 +32,7 @@ impl SceneBuilder<'_> {
     ) -> Result<(NamedAppearances, bool), SceneError> {
         let text = read_file(path, place)?;
         let References { libraries, materials, has_colours } = references(&text);
-        let mut read: Vec<(PathBuf, Vec<ClassicMaterial>)> = Vec::new();
+        let mut read: Vec<(PathBuf, Vec<SourceMaterial>)> = Vec::new();
         let mut definitions = Definitions::default();
         for (line, text) in libraries {
             let from = Location::line(path, line);
@@ -66,7 +71,7 @@ impl SceneBuilder<'_> {
             let mut reader = LibraryReader::new(self, &file, unit);
             for material in library {
                 if let Some(names) = wanted.remove(&first) {
-                    let appearance = reader.appearance(material)?;
+                    let appearance = reader.appearance(&material)?;
                     named.appearances.extend(names.into_iter().map(|name| (name, appearance)));
                 }
                 first += 1;
@@ -79,10 +84,10 @@ impl SceneBuilder<'_> {
     /// Names definitions of materials that are left out, as another one has their name.
     fn name_repeated(
         &mut self,
-        read: &[(PathBuf, Vec<ClassicMaterial>)],
+        read: &[(PathBuf, Vec<SourceMaterial>)],
         wanted: &BTreeMap<usize, BTreeSet<String>>,
     ) -> Result<(), SceneError> {
-        let all: Vec<&ClassicMaterial> = read.iter().flat_map(|(_, library)| library).collect();
+        let all: Vec<&SourceMaterial> = read.iter().flat_map(|(_, library)| library).collect();
         let used = |name: &String| {
             let number = wanted.iter().find(|(_, names)| names.contains(name))?.0;
             all.get(*number).copied()
@@ -98,7 +103,7 @@ impl SceneBuilder<'_> {
         Ok(())
     }
 
-    fn read_library(&mut self, file: &Path, from: &Location) -> Result<Vec<ClassicMaterial>, SceneError> {
+    fn read_library(&mut self, file: &Path, from: &Location) -> Result<Vec<SourceMaterial>, SceneError> {
         let bytes = match read_file(file, from) {
             Err(SceneError::Foreign { kind, .. }) => {
                 let what = format!("the material library {} is {}", file.display(), kind.what);
@@ -108,46 +113,15 @@ impl SceneBuilder<'_> {
             }
             read => read?,
         };
-        if !self.sources.iter().any(|s| s.0 == file) {
-            self.sources.push((file.to_owned(), fnv1a(&bytes)));
-        }
-        if let Some(line) = mtl::before_materials(&bytes) {
+        self.add_source(file, fnv1a(&bytes));
+        if let Some(line) = source::before_materials(&bytes) {
             let what = "statements precede the first newmtl";
             self.log.warn(&Location::line(file, line), what, "they are left out")?;
         }
-        let mut library = mtl::read(&bytes, file)?;
-        for note in mtl::decode_codes(&mut library) {
+        let mut library = source::read(&bytes, file)?;
+        for note in source::decode_codes(&mut library) {
             self.log.add(note)?;
         }
         Ok(library)
     }
-
-    /// Returns the material of faces without one: diffuse, of the colours of the mesh if it has some, else grey.
-    pub(super) fn default_material(&mut self, has_colours: bool, place: &Location) -> MaterialId {
-        let diffuse = match has_colours {
-            true => {
-                let texture = self.contents.add_attribute(COLOUR, None);
-                Reflectance::Textured { texture, scale: Rgb::ONE }
-            }
-            false => Reflectance::Constant(Rgb::splat(0.5)),
-        };
-        let material = Material { name: "default".into(), two_sided: true, diffuse, ..Material::default() };
-        self.contents.add_material(material, place.clone())
-    }
-}
-
-/// Returns the path of the file that a statement in `folder` names, if there is one.
-///
-/// A file beside the statement's stands for one in a folder that does not exist, as of another machine.
-pub(super) fn existing_file(folder: &Path, name: &str) -> Option<PathBuf> {
-    let name = name.trim_matches('"');
-    let beside =
-        spellings(name).into_iter().filter_map(|name| Some(name.rsplit(['/', '\\']).next()?.to_owned()));
-    let names = iter::once(name.to_owned()).chain(beside);
-    names.flat_map(|name| possible_paths(folder, &name)).find(|path| path.is_file())
-}
-
-/// Returns the path of a file that a statement in `folder` names, and that is not there.
-pub(super) fn missing_file(folder: &Path, name: &str) -> PathBuf {
-    folder.join(name.trim_matches('"').replace('\\', "/"))
 }

@@ -1,7 +1,7 @@
 //! Tests of materials of MTL files.
 
-use crate::mesh::map_options::options;
-use crate::mesh::mtl::mtl;
+use super::options::options;
+use super::source::statements;
 use crate::statements::Fate;
 use crate::{LoadOptions, Loaded, Severity, load};
 use base::math::Rgb;
@@ -109,7 +109,7 @@ fn every_statement_and_option_is_read_or_named() {
         "-type" => "sphere",
         _ => "0.5",
     };
-    let of_statements = mtl().iter().map(|s| (s, format!("{} {}", s.name, value(s.name))));
+    let of_statements = statements().iter().map(|s| (s, format!("{} {}", s.name, value(s.name))));
     let of_options = options().iter().map(|s| {
         let map = if matches!(s.name, "-bm" | "-imfchan") { "bump" } else { "map_Kd" };
         (s, format!("{map} {} {} tile.png", s.name, value(s.name)))
