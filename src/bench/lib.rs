@@ -14,6 +14,7 @@ mod budget;
 mod calibrate;
 mod document;
 mod extremes;
+mod front;
 mod growth;
 mod hsh;
 mod lit_scene;

@@ -100,8 +100,8 @@ impl Experiment<'_> {
             warnings.extend(doubt.map(|doubt| format!("{}: {doubt}", case.labels.join(", "))));
             rows.push(Row {
                 labels: case.labels,
-                ratio: Spread::of(&ratios),
-                rate: Spread::of(&own.rates),
+                ratio: Spread::new(&ratios),
+                rate: Spread::new(&own.rates),
                 samples: own.rates.clone(),
                 figures: case.figures,
             });
@@ -141,7 +141,7 @@ impl Experiment<'_> {
 
 /// Returns the reason for which the ratios of a case should be doubted, with a remedy.
 fn doubt(ratios: &[f64], short: bool) -> Option<String> {
-    let spread = Spread::of(ratios).relative();
+    let spread = Spread::new(ratios).relative();
     if short {
         return Some("there is next to nothing to do; try a larger scene".to_owned());
     }
@@ -178,7 +178,7 @@ mod tests {
         assert_eq!(order.borrow().concat(), "aabbabbaab");
         assert_eq!((rows[0].ratio.median, rows[0].samples.len()), (1.0, 3));
         let median = |i: usize| rows[0].samples[i] / rows[1].samples[i];
-        let expected = Spread::of(&[1.0 / median(0), 1.0 / median(1), 1.0 / median(2)]);
+        let expected = Spread::new(&[1.0 / median(0), 1.0 / median(1), 1.0 / median(2)]);
         assert!((rows[1].ratio.median / expected.median - 1.0).abs() < 1e-12);
     }
 }

@@ -50,7 +50,7 @@ pub struct Spread {
 
 impl Spread {
     /// Computes median and quartiles of some values; all 0 without values.
-    pub fn of(values: &[f64]) -> Spread {
+    pub fn new(values: &[f64]) -> Spread {
         let mut sorted = values.to_vec();
         sorted.sort_by(f64::total_cmp);
         let at = |fraction: f64| {
@@ -109,9 +109,9 @@ mod tests {
 
     #[test]
     fn quartiles_are_interpolated() {
-        assert_eq!(Spread::of(&[4.0, 1.0, 3.0, 2.0, 5.0]), Spread { median: 3.0, low: 2.0, high: 4.0 });
-        assert_eq!(Spread::of(&[2.0, 1.0]), Spread { median: 1.5, low: 1.25, high: 1.75 });
-        assert_eq!(Spread::of(&[]), Spread::default());
-        assert_eq!(Spread::of(&[7.0]).relative(), 0.0);
+        assert_eq!(Spread::new(&[4.0, 1.0, 3.0, 2.0, 5.0]), Spread { median: 3.0, low: 2.0, high: 4.0 });
+        assert_eq!(Spread::new(&[2.0, 1.0]), Spread { median: 1.5, low: 1.25, high: 1.75 });
+        assert_eq!(Spread::new(&[]), Spread::default());
+        assert_eq!(Spread::new(&[7.0]).relative(), 0.0);
     }
 }

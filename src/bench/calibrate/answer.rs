@@ -45,7 +45,7 @@ pub struct SceneAnswer {
 
 impl Figures {
     /// Takes the errors of an image.
-    pub fn of(errors: &Errors) -> Figures {
+    pub fn new(errors: &Errors) -> Figures {
         Figures { displayed: errors.displayed_rmse(), flip: errors.flip }
     }
 

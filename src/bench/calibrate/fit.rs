@@ -4,7 +4,6 @@
 //! priced by the step's own time. Prices of rays beside paths are relative to a ray of a path in the scene.
 
 use super::answer::SceneAnswer;
-use super::line::{line, residual};
 use crate::study::{Bounded, Shot, time_to};
 use base::film::Image;
 use base::stats::{Stage, Stopwatch};
@@ -170,6 +169,22 @@ impl Fits {
     }
 }
 
+/// Returns intercept and slope of the line through some points; slope 0 if their first coordinates are equal.
+fn line(points: &[(f64, f64)]) -> [f64; 2] {
+    let n = points.len().max(1) as f64;
+    let mean = |of: &dyn Fn(&(f64, f64)) -> f64| points.iter().map(of).sum::<f64>() / n;
+    let (x, y) = (mean(&|p| p.0), mean(&|p| p.1));
+    let [xx, xy] = [mean(&|p| (p.0 - x).powi(2)), mean(&|p| (p.0 - x) * (p.1 - y))];
+    let slope = if xx > 1e-9 { xy / xx } else { 0.0 };
+    [y - slope * x, slope]
+}
+
+/// Returns the factor by which values differ from what is expected of them, as a root mean square of logarithms.
+fn residual(pairs: impl Iterator<Item = (f64, f64)>) -> f64 {
+    let squares: Vec<f64> = pairs.map(|(value, expected)| (value / expected).ln().powi(2)).collect();
+    (squares.iter().sum::<f64>() / squares.len().max(1) as f64).sqrt().exp()
+}
+
 /// Measures the processor seconds of denoising a pixel, by quality: fast, balanced, high. The image guides itself.
 pub fn denoising(image: &Image) -> [Option<f64>; 3] {
     let guides = Guides { albedo: Some(image), normal: Some(image), noise_free: true, ..Guides::default() };
@@ -220,5 +235,14 @@ mod tests {
         assert!(written.starts_with(HEAD));
         let fitted = Fitted { name: "ray", used: 0.08, value: 0.12345, residual: 1.5, images: 7 };
         assert!(source(&[fitted], "").contains("    // Factor 1.50, 7 images.\n    ray: 0.123,\n"));
+    }
+
+    #[test]
+    fn lines_and_factors_are_found_again() {
+        let points = [0.0, 1.0, 5.0, 7.0].map(|x| (x, 3.0 - 0.5 * x));
+        let [intercept, slope] = line(&points);
+        assert!((intercept - 3.0).abs() < 1e-12 && (slope + 0.5).abs() < 1e-12);
+        assert_eq!(line(&[(2.0, 1.0), (2.0, 3.0)]), [2.0, 0.0]);
+        assert!((residual([(2.0, 1.0), (1.0, 2.0)].into_iter()) - 2.0).abs() < 1e-12);
     }
 }

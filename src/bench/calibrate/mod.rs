@@ -8,7 +8,6 @@
 
 mod answer;
 mod fit;
-mod line;
 
 use super::document::Grid;
 use super::plot::{Colour, Line};
@@ -54,7 +53,7 @@ const QUESTION: Question = Question {
     table: &[
         Column::new("spp", "", |_, s| Cell::exact(s.candidate.method.spp())),
         Column::new("seconds", "", |_, s| Cell::seconds(s.seconds())),
-        Column::new("errors", "", |_, s| Cell::exact(Figures::of(&s.errors))),
+        Column::new("errors", "", |_, s| Cell::exact(Figures::new(&s.errors))),
     ],
     figures: &[Figure {
         name: "RMSE of the displayed image",
@@ -139,8 +138,8 @@ impl Budget {
     fn new(shot: &Shot, paths: &[Shot], chooser: &Chooser) -> Budget {
         let method = &shot.candidate.method;
         let curve: Vec<(f64, Figures)> =
-            paths.iter().map(|path| (path.seconds(), Figures::of(&path.errors))).collect();
-        let (cache, paths) = (Figures::of(&shot.errors), error_within(shot.seconds(), &curve));
+            paths.iter().map(|path| (path.seconds(), Figures::new(&path.errors))).collect();
+        let (cache, paths) = (Figures::new(&shot.errors), error_within(shot.seconds(), &curve));
         let choice = chooser.on_film(method);
         let chose_paths = matches!(choice.method, Method::Path(_));
         let chosen = if chose_paths { paths } else { cache };

@@ -56,7 +56,7 @@ fn marks(series: &Series, x: &Axis, y: &Axis) -> String {
     let mut svg = String::new();
     let joined = series.joined();
     if joined.len() > 1 {
-        let path: Vec<String> = joined.iter().map(|p| format!("{:.1} {:.1}", x.at(p.x), y.at(p.y))).collect();
+        let path: Vec<String> = joined.iter().map(|p| format!("{:.1} {:.1}", x.at(p.0), y.at(p.1))).collect();
         svg += &format!("<path class=\"line {class}\" d=\"M{}\"/>\n", path.join("L"));
     }
     for point in series.drawable() {

@@ -1,5 +1,7 @@
 //! Points of plots.
 
+use crate::front::front;
+
 /// Colour of a series.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Colour {
@@ -79,39 +81,12 @@ impl Series {
     }
 
     /// Returns the points that the line joins. The front is sorted by its first coordinate.
-    pub fn joined(&self) -> Vec<&Point> {
+    pub fn joined(&self) -> Vec<(f64, f64)> {
+        let points = self.drawable().map(|point| (point.x, point.y));
         match self.line {
             Line::None => Vec::new(),
-            Line::All => self.drawable().collect(),
-            Line::Front => self.front(),
+            Line::All => points.collect(),
+            Line::Front => front(points),
         }
-    }
-
-    /// Returns the points that no other point beats in both coordinates.
-    fn front(&self) -> Vec<&Point> {
-        let mut points: Vec<&Point> = self.drawable().collect();
-        points.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
-        let mut front: Vec<&Point> = Vec::new();
-        for point in points {
-            if front.last().is_none_or(|best| point.y < best.y) {
-                front.push(point);
-            }
-        }
-        front
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_front_holds_what_nothing_beats() {
-        let point = |x, y| Point { x, y, name: String::new() };
-        let points =
-            vec![point(3.0, 2.0), point(1.0, 4.0), point(2.0, 5.0), point(0.0, 9.0), point(4.0, 2.0)];
-        let series = Series { name: String::new(), colour: Colour::Red, line: Line::Front, points };
-        let front: Vec<[f64; 2]> = series.front().iter().map(|p| [p.x, p.y]).collect();
-        assert_eq!(front, [[1.0, 4.0], [3.0, 2.0]]);
     }
 }

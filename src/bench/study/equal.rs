@@ -1,5 +1,6 @@
 //! Time that a method takes to an error, within the range of its measured images.
 
+use crate::front::front;
 use serde::Serialize;
 use std::fmt;
 
@@ -41,14 +42,7 @@ impl Bounded {
 /// Returns the time to `error`, from the times and errors of a method's images, all positive. Images that another image
 /// beats in both are ignored. Times are interpolated in logarithms.
 pub fn time_to(error: f64, images: &[(f64, f64)]) -> Option<Bounded> {
-    let mut sorted: Vec<(f64, f64)> = images.iter().copied().filter(|p| p.0 > 0.0 && p.1 > 0.0).collect();
-    sorted.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let mut front: Vec<(f64, f64)> = Vec::new();
-    for image in sorted {
-        if front.last().is_none_or(|best| image.1 < best.1) {
-            front.push(image);
-        }
-    }
+    let front = front(images.iter().copied().filter(|image| image.0 > 0.0 && image.1 > 0.0));
     let (fastest, best) = (*front.first()?, *front.last()?);
     if error.is_nan() || error <= 0.0 {
         return None;

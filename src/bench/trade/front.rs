@@ -1,5 +1,6 @@
 //! Errors that points are judged by, and the Pareto front.
 
+use crate::front::front;
 use crate::study::{Answer, Group, Shot};
 use base::setting::JudgedBy;
 
@@ -32,22 +33,5 @@ pub fn is_on_front(answer: &Answer, shot: &Shot, error: JudgedBy) -> bool {
         let is_judged = is_own && (shot.candidate.whole_pixels() || error == JudgedBy::Flip);
         Some((shot.seconds(), error_of(shot, error).filter(|_| is_judged)?))
     };
-    place(shot).is_some_and(|point| is_unbeaten(point, answer.shots.iter().filter_map(place)))
-}
-
-/// Returns true if no other point beats a point in both figures.
-fn is_unbeaten((x, y): (f64, f64), mut others: impl Iterator<Item = (f64, f64)>) -> bool {
-    !others.any(|other| other.0 <= x && other.1 <= y && (other.0 < x || other.1 < y))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_front_holds_what_nothing_beats() {
-        let points = [(1.0, 4.0), (2.0, 2.0), (2.0, 3.0), (4.0, 1.0), (5.0, 1.0), (2.0, 2.0)];
-        let front = points.map(|point| is_unbeaten(point, points.into_iter()));
-        assert_eq!(front, [true, true, false, true, false, true]);
-    }
+    place(shot).is_some_and(|point| front(answer.shots.iter().filter_map(place)).contains(&point))
 }
