@@ -1,7 +1,7 @@
 //! Cluster bounds and contributions of lights, point by point and for sixteen points at once.
 
 use super::lit_scene::{Dice, LitScene, packet};
-use super::measure::{Case, Clock, Experiment};
+use super::measure::{Case, Clock, measure};
 use super::{Benchmark, Context, Kind, Table};
 use base::math::LANES;
 use std::cmp::Reverse;
@@ -55,17 +55,14 @@ fn run(context: &Context) -> Vec<Table> {
         cases.push(Case::new(&["light", name, "alone"], at + 2, units, each(ones, &nodes, light_alone)));
         cases.push(Case::new(&["light", name, "sixteen"], at + 2, units, each(all, &nodes, light_together)));
     }
-    let experiment = Experiment {
+    let table = Table {
         title: "Bounds",
         about: "Error to expect of a cluster, and light of its representative. Ratio to one point at a time.",
         labels: &["what", "surfaces", "points"],
         unit: "M/s",
-        scale: 1e-6,
-        figures: &[],
-        clock: Clock::Thread,
-        cases,
+        ..Table::default()
     };
-    vec![experiment.measure(&context.settings)]
+    vec![measure(table, Clock::Thread, cases, &context.settings)]
 }
 
 /// Returns work that calls a function for each packet and each node.

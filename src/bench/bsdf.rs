@@ -1,7 +1,7 @@
 //! Materials: evaluations, samples and bounds per second, of one direction and of sixteen at once.
 
 use super::lit_scene::Dice;
-use super::measure::{Case, Clock, Experiment};
+use super::measure::{Case, Clock, measure};
 use super::{Benchmark, Context, Kind, Table};
 use base::math::{LANES, Rgb, Vec2x16, Vec3x16};
 use base::sampling::uniform_sphere;
@@ -23,17 +23,14 @@ fn run(context: &Context) -> Vec<Table> {
     let scene = Scene { materials: kinds(), ..Scene::default() };
     let materials = Materials::new(&scene);
     let packets = DirectionPackets::new();
-    let experiment = Experiment {
+    let table = Table {
         title: "Materials",
         about: "Sixteen directions from one viewpoint, with its preparation. Ratio to one direction at a time.",
         labels: &["call", "material", "directions"],
         unit: "M/s",
-        scale: 1e-6,
-        figures: &[],
-        clock: Clock::Thread,
-        cases: cases(&scene, &materials, &packets),
+        ..Table::default()
     };
-    vec![experiment.measure(&context.settings)]
+    vec![measure(table, Clock::Thread, cases(&scene, &materials, &packets), &context.settings)]
 }
 
 /// Returns the cases of one direction and of sixteen directions at once.

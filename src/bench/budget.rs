@@ -123,15 +123,14 @@ fn table(images: &[Image]) -> Table {
     rows.push(row(images, "Embree and denoiser", foreign));
     rows.retain(|row| row.rate.median > 0.0);
     Table {
-        title: "Budget".to_owned(),
+        title: "Budget",
         about: "Processor time of the default method on one thread, in at most three rounds, and Embree's queries, of \
-                which one of thirteen is timed. Eye rays are packets of similar rays. Ratio to the total."
-            .to_owned(),
-        labels: vec!["part".to_owned()],
-        unit: "us/pixel".to_owned(),
-        figures: FIGURES.map(str::to_owned).into(),
+                which one of thirteen is timed. Eye rays are packets of similar rays. Ratio to the total.",
+        labels: &["part"],
+        unit: "us/pixel",
+        figures: &FIGURES,
         rows,
-        warnings: Vec::new(),
+        ..Table::default()
     }
 }
 

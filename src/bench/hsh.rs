@@ -1,7 +1,7 @@
 //! Hemispherical harmonics: virtual lights added to a series per second, and evaluations of the reflected radiance.
 
 use super::lit_scene::Dice;
-use super::measure::{Case, Clock, Experiment};
+use super::measure::{Case, Clock, measure};
 use super::{Benchmark, Context, Kind, Table};
 use base::math::Rgb;
 use glam::Vec3;
@@ -45,17 +45,14 @@ fn run(context: &Context) -> Vec<Table> {
             }
         }));
     }
-    let experiment = Experiment {
+    let table = Table {
         title: "Hemispherical harmonics",
         about: "Ratio to one band.",
         labels: &["what", "bands"],
         unit: "M/s",
-        scale: 1e-6,
-        figures: &[],
-        clock: Clock::Thread,
-        cases,
+        ..Table::default()
     };
-    vec![experiment.measure(&context.settings)]
+    vec![measure(table, Clock::Thread, cases, &context.settings)]
 }
 
 /// Returns a random light above the receiver that roughly faces it.

@@ -56,22 +56,6 @@ impl<'a> Case<'a> {
     }
 }
 
-/// Cases to be measured against each other, and the description of their table.
-pub(super) struct Experiment<'a> {
-    pub title: &'a str,
-    pub about: &'a str,
-    /// Names of the cases' labels.
-    pub labels: &'a [&'a str],
-    /// Unit of the rates.
-    pub unit: &'a str,
-    /// Factor from units of work per second to that unit.
-    pub scale: f64,
-    /// Names of the cases' further figures.
-    pub figures: &'a [&'a str],
-    pub clock: Clock,
-    pub cases: Vec<Case<'a>>,
-}
-
 /// Relative distance of a ratio's quartiles beyond which a warning is given.
 const UNSTEADY: f64 = 0.1;
 /// Minimum duration of a sample without a warning, seconds.
@@ -87,56 +71,42 @@ struct CaseSamples {
     short: bool,
 }
 
-impl Experiment<'_> {
-    /// Measures the cases.
-    pub fn measure(mut self, settings: &Settings) -> Table {
-        let samples = self.samples(settings);
-        let mut warnings = Vec::new();
-        let mut rows = Vec::with_capacity(self.cases.len());
-        for (case, own) in self.cases.into_iter().zip(&samples) {
-            let against = &samples[case.against].rates;
-            let ratios: Vec<f64> = own.rates.iter().zip(against).map(|(a, b)| a / b).collect();
-            let doubt = doubt(&ratios, own.short);
-            warnings.extend(doubt.map(|doubt| format!("{}: {doubt}", case.labels.join(", "))));
-            rows.push(Row {
-                labels: case.labels,
-                ratio: Spread::new(&ratios),
-                rate: Spread::new(&own.rates),
-                samples: own.rates.clone(),
-                figures: case.figures,
-            });
-        }
-        let owned = |names: &[&str]| names.iter().map(|n| (*n).to_owned()).collect();
-        Table {
-            title: self.title.to_owned(),
-            about: self.about.to_owned(),
-            labels: owned(self.labels),
-            unit: self.unit.to_owned(),
-            figures: owned(self.figures),
-            rows,
-            warnings,
-        }
+/// Measures cases against each other, and adds them to a table as rows. Rates are in millions of units per second.
+pub(super) fn measure(mut table: Table, clock: Clock, mut cases: Vec<Case>, settings: &Settings) -> Table {
+    let samples = samples(&mut cases, clock, settings);
+    for (case, own) in cases.into_iter().zip(&samples) {
+        let against = &samples[case.against].rates;
+        let ratios: Vec<f64> = own.rates.iter().zip(against).map(|(a, b)| a / b).collect();
+        let doubt = doubt(&ratios, own.short);
+        table.warnings.extend(doubt.map(|doubt| format!("{}: {doubt}", case.labels.join(", "))));
+        table.rows.push(Row {
+            labels: case.labels,
+            ratio: Spread::new(&ratios),
+            rate: Spread::new(&own.rates),
+            samples: own.rates.clone(),
+            figures: case.figures,
+        });
     }
+    table
+}
 
-    fn samples(&mut self, settings: &Settings) -> Vec<CaseSamples> {
-        let (clock, scale) = (self.clock, self.scale);
-        let runs = |case: &mut Case| {
-            case.time(1, clock);
-            (settings.seconds / case.time(1, clock).max(1e-9)).clamp(1.0, MAX_RUNS) as usize
-        };
-        let runs: Vec<usize> = self.cases.iter_mut().map(runs).collect();
-        let mut samples = vec![CaseSamples::default(); self.cases.len()];
-        for round in 0..settings.repeats {
-            for place in 0..self.cases.len() {
-                let i = if round % 2 == 0 { place } else { self.cases.len() - 1 - place };
-                let seconds = self.cases[i].time(runs[i], clock);
-                samples[i].short |= seconds < MIN_SECONDS;
-                let units = self.cases[i].units * runs[i] as f64;
-                samples[i].rates.push(units / seconds.max(1e-9) * scale);
-            }
+fn samples(cases: &mut [Case], clock: Clock, settings: &Settings) -> Vec<CaseSamples> {
+    let runs = |case: &mut Case| {
+        case.time(1, clock);
+        (settings.seconds / case.time(1, clock).max(1e-9)).clamp(1.0, MAX_RUNS) as usize
+    };
+    let runs: Vec<usize> = cases.iter_mut().map(runs).collect();
+    let mut samples = vec![CaseSamples::default(); cases.len()];
+    for round in 0..settings.repeats {
+        for place in 0..cases.len() {
+            let i = if round % 2 == 0 { place } else { cases.len() - 1 - place };
+            let seconds = cases[i].time(runs[i], clock);
+            samples[i].short |= seconds < MIN_SECONDS;
+            let units = cases[i].units * runs[i] as f64;
+            samples[i].rates.push(1e-6 * units / seconds.max(1e-9));
         }
-        samples
     }
+    samples
 }
 
 /// Returns the reason for which the ratios of a case should be doubted, with a remedy.
@@ -164,17 +134,8 @@ mod tests {
             let order = &order;
             Case::new(&[name], 0, 2.0, move || order.borrow_mut().push(name))
         };
-        let experiment = Experiment {
-            title: "",
-            about: "",
-            labels: &["name"],
-            unit: "",
-            scale: 1.0,
-            figures: &[],
-            clock: Clock::Process,
-            cases: vec![case("a"), case("b")],
-        };
-        let rows = experiment.measure(&Settings { repeats: 3, seconds: 0.0, threads: 1 }).rows;
+        let settings = Settings { repeats: 3, seconds: 0.0, threads: 1 };
+        let rows = measure(Table::default(), Clock::Process, vec![case("a"), case("b")], &settings).rows;
         assert_eq!(order.borrow().concat(), "aabbabbaab");
         assert_eq!((rows[0].ratio.median, rows[0].samples.len()), (1.0, 3));
         let median = |i: usize| rows[0].samples[i] / rows[1].samples[i];

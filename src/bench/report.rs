@@ -4,18 +4,18 @@ use crate::document::{Document, Grid};
 use serde::Serialize;
 
 /// Cases measured against each other.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Default, Serialize)]
 pub struct Table {
     /// Title in a few words.
-    pub title: String,
+    pub title: &'static str,
     /// Description of the rows, and of the case that ratios refer to.
-    pub about: String,
+    pub about: &'static str,
     /// Names of the columns that tell rows apart.
-    pub labels: Vec<String>,
+    pub labels: &'static [&'static str],
     /// Unit of the rates.
-    pub unit: String,
+    pub unit: &'static str,
     /// Names of further figures.
-    pub figures: Vec<String>,
+    pub figures: &'static [&'static str],
     /// The cases.
     pub rows: Vec<Row>,
     /// Warnings about cases.
@@ -73,10 +73,10 @@ impl Spread {
 impl Table {
     /// Adds the table to a document: labels, ratio with quartiles, rate with relative spread, further figures.
     pub fn tell(&self, document: &mut Document) {
-        document.heading(2, &self.title);
-        document.text(&self.about);
-        let fixed = ["ratio", "quartiles", &self.unit, "spread"].map(str::to_owned);
-        let heads = self.labels.iter().chain(&fixed).chain(&self.figures).cloned().collect();
+        document.heading(2, self.title);
+        document.text(self.about);
+        let fixed = ["ratio", "quartiles", self.unit, "spread"];
+        let heads = self.labels.iter().chain(&fixed).chain(self.figures).copied().map(str::to_owned);
         let cells = |row: &Row| {
             let fixed = [
                 number(row.ratio.median),
@@ -88,7 +88,7 @@ impl Table {
             row.labels.iter().cloned().chain(fixed).chain(figures).collect()
         };
         let rows = self.rows.iter().map(cells).collect();
-        document.grid(&Grid { names: self.labels.len(), heads, rows });
+        document.grid(&Grid { names: self.labels.len(), heads: heads.collect(), rows });
         self.warnings.iter().for_each(|warning| document.text(&format!("*warning: {warning}*")));
     }
 }

@@ -1,7 +1,7 @@
 //! Light trees: time to build and size of the cuts through them, for both families of builders.
 
 use super::lit_scene::{LitScene, packet};
-use super::measure::{Case, Clock, Experiment};
+use super::measure::{Case, Clock, measure};
 use super::{Benchmark, Context, Kind, Table};
 use base::progress::Control;
 use std::hint::black_box;
@@ -43,17 +43,15 @@ fn run(context: &Context) -> Vec<Table> {
             cases.push(Case::new(&labels, against, lights, build).with(&cuts));
         }
     }
-    let experiment = Experiment {
+    let table = Table {
         title: "Light trees",
         about: "Virtual lights clustered per second. Ratio to the divisive family. Cuts of single points, not capped.",
         labels: &["indirect lights", "family"],
         unit: "M lights/s",
-        scale: 1e-6,
         figures: &["mean cut at 2 %", "at 1 %"],
-        clock: Clock::Process,
-        cases,
+        ..Table::default()
     };
-    vec![experiment.measure(&context.settings)]
+    vec![measure(table, Clock::Process, cases, &context.settings)]
 }
 
 /// Computes the mean size of the cuts of eye samples spread over the image.

@@ -8,6 +8,7 @@ mod tables;
 mod trace;
 
 use super::lit_scene::LitScene;
+use super::measure::{Clock, measure};
 use super::{Benchmark, Context, Kind, Table};
 use trace::Trace;
 
@@ -20,9 +21,10 @@ pub(super) const BENCHMARK: Benchmark = Benchmark {
 fn run(context: &Context) -> Vec<Table> {
     let Some(lit) = LitScene::new(context) else { return Vec::new() };
     let traces = Trace::all(&lit);
-    let measure = |(name, table): (&str, tables::Measure)| {
+    let measured = |(name, set_up): (&str, tables::SetUp)| {
         (context.say)(name);
-        table(lit.world, &traces).measure(&context.settings)
+        let (table, cases) = set_up(lit.world, &traces);
+        measure(table, Clock::Thread, cases, &context.settings)
     };
-    tables::ALL.into_iter().map(measure).collect()
+    tables::ALL.into_iter().map(measured).collect()
 }

@@ -1,32 +1,19 @@
 //! The tables: each compares several ways to trace the same rays.
 
 use super::trace::{SegmentPacket, Trace};
-use crate::measure::{Case, Clock, Experiment};
+use crate::Table;
+use crate::measure::Case;
 use embree::{PreparedRays, Ray, Width};
 use std::hint::black_box;
 use world::World;
 use world::shadow::{Engine, OccluderCacheSettings};
 
-/// Function that sets up the cases of a table.
-pub type Measure = for<'a> fn(&'a World, &'a [Trace]) -> Experiment<'a>;
+/// Function that sets up a table and its cases, in millions of rays per second on the calling thread.
+pub type SetUp = for<'a> fn(&'a World, &'a [Trace]) -> (Table, Vec<Case<'a>>);
 
 /// All tables, each with a name for messages.
-pub const ALL: [(&str, Measure); 3] =
+pub const ALL: [(&str, SetUp); 3] =
     [("packet widths", widths), ("engine against plain loops", engine), ("occluder cache", cache)];
-
-/// Millions of rays per second on the calling thread.
-fn experiment<'a>(cases: Vec<Case<'a>>) -> Experiment<'a> {
-    Experiment {
-        title: "",
-        about: "",
-        labels: &[],
-        unit: "Mrays/s",
-        scale: 1e-6,
-        figures: &[],
-        clock: Clock::Thread,
-        cases,
-    }
-}
 
 /// Creates a case that traces rays and counts something about them.
 fn case<'a>(labels: &[&str], against: usize, rays: u64, count: impl Fn() -> u64 + 'a) -> Case<'a> {
@@ -36,7 +23,7 @@ fn case<'a>(labels: &[&str], against: usize, rays: u64, count: impl Fn() -> u64 
 }
 
 /// Compares packet widths, with and without the flag for coherent rays.
-fn widths<'a>(world: &'a World, traces: &'a [Trace]) -> Experiment<'a> {
+fn widths<'a>(world: &'a World, traces: &'a [Trace]) -> (Table, Vec<Case<'a>>) {
     let mut cases = Vec::new();
     for trace in traces {
         let (against, rays) = (cases.len(), trace.rays());
@@ -51,17 +38,19 @@ fn widths<'a>(world: &'a World, traces: &'a [Trace]) -> Experiment<'a> {
             cases.push(case(&labels, against, rays, count).with(&figures));
         }
     }
-    Experiment {
+    let table = Table {
         title: "Packet widths",
         about: "Plain loops over Embree's queries. Ratio to single rays.",
         labels: &["rays", "width", "flag"],
         figures: &["rays per query", "occluded %"],
-        ..experiment(cases)
-    }
+        unit: "Mrays/s",
+        ..Table::default()
+    };
+    (table, cases)
 }
 
 /// Compares the engine with plain loops over the same single rays, and over the same packets.
-fn engine<'a>(world: &'a World, traces: &'a [Trace]) -> Experiment<'a> {
+fn engine<'a>(world: &'a World, traces: &'a [Trace]) -> (Table, Vec<Case<'a>>) {
     let mut cases = Vec::new();
     for trace in traces {
         for width in [Width::One, world.accel.widest()] {
@@ -80,20 +69,22 @@ fn engine<'a>(world: &'a World, traces: &'a [Trace]) -> Experiment<'a> {
             cases.push(case(&[trace.name, &name, "engine"], against, trace.rays(), engine));
         }
     }
-    Experiment {
+    let table = Table {
         title: "Engine",
         about: "The renderer's engine against plain Embree loops over the same rays, coherent in packets. Ratio to \
                 the plain loop.",
         labels: &["rays", "width", "traced by"],
-        ..experiment(cases)
-    }
+        unit: "Mrays/s",
+        ..Table::default()
+    };
+    (table, cases)
 }
 
 /// Slots and ways of the occluder caches that are compared.
 const SIZES: [(usize, usize); 6] = [(1024, 1), (4096, 1), (4096, 2), (4096, 4), (4096, 8), (16384, 4)];
 
 /// Compares occluder caches in front of the queries of each order, single rays and packets.
-fn cache<'a>(world: &'a World, traces: &'a [Trace]) -> Experiment<'a> {
+fn cache<'a>(world: &'a World, traces: &'a [Trace]) -> (Table, Vec<Case<'a>>) {
     let mut cases = Vec::new();
     for trace in traces {
         let against = cases.len();
@@ -112,14 +103,16 @@ fn cache<'a>(world: &'a World, traces: &'a [Trace]) -> Experiment<'a> {
             cases.push(case(&[trace.name, &name], against, all.rays, count).with(&figures));
         }
     }
-    Experiment {
+    let table = Table {
         title: "Occluder cache",
         about: "A cache in front of the engine's queries, single rays and packets as the cuts ask for them. It is \
                 cleared after each stretch of 64 receivers. Ratio to the engine without a cache.",
         labels: &["rays", "slots x ways"],
         figures: &["saved %", "answers changed", "in packets %"],
-        ..experiment(cases)
-    }
+        unit: "Mrays/s",
+        ..Table::default()
+    };
+    (table, cases)
 }
 
 /// Returns the number of occluded rays of a trace, in the order and in the packets of its queries.
