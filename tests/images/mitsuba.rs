@@ -12,6 +12,7 @@ use lightsplat::view::View;
 use lightsplat::world::World;
 use std::path::Path;
 use std::process::Command;
+use std::sync::OnceLock;
 
 /// Edge of the pictures in pixels.
 const SIZE: u32 = 24;
@@ -75,9 +76,18 @@ mean, variance = np.mean(pictures, 0), np.var(pictures, 0, ddof=1) / runs
 np.concatenate([mean.ravel(), variance.ravel()]).astype('<f4').tofile(sys.argv[2])
 ";
 
+/// True if the other renderer is there, which is tried once.
+fn is_there() -> bool {
+    static IS_THERE: OnceLock<bool> = OnceLock::new();
+    *IS_THERE.get_or_init(|| {
+        let output = Command::new("python3").args(["-c", "import mitsuba"]).output();
+        output.is_ok_and(|output| output.status.success())
+    })
+}
+
 /// Mean and variance by the other renderer; `None`, with a line, where it is not there.
 fn by_mitsuba(scene: &Path, folder: &Path) -> Option<[Image; 2]> {
-    if !Command::new("python3").args(["-c", "import mitsuba"]).output().is_ok_and(|o| o.status.success()) {
+    if !is_there() {
         eprintln!("skipped: there is no Python package mitsuba");
         return None;
     }

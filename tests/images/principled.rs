@@ -7,8 +7,8 @@ use lightsplat::math::Rgb;
 use lightsplat::method::vpl;
 use lightsplat::scene::{Material, Principled, Reflectance};
 
-/// Number of paths of a reference. Its standard error is a fifth of the noise that is allowed.
-const PATHS: u32 = 1 << 18;
+/// Number of paths of a reference. Its standard error is a quarter of the noise that is allowed.
+const PATHS: u32 = 1 << 17;
 
 /// A room with a ball of varnished paint, of metal, of frosted glass, and of leaves, on walls that are
 /// principled, too, but for the leaves.
