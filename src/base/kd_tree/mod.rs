@@ -7,4 +7,4 @@ mod balanced;
 mod wide;
 
 pub use balanced::KdTree;
-pub use wide::WideKdTree;
+pub use wide::{WideKdTree, least_lane};

@@ -44,6 +44,16 @@ impl WideNode {
     }
 }
 
+/// Returns the first lane with the least of sixteen numbers that are not negative, and the number.
+#[inline(always)]
+pub fn least_lane(numbers: &F32x16) -> (usize, f32) {
+    // The bits of such numbers have their order. Minima of integers need no order of evaluation.
+    let bits: U32x16 = std::array::from_fn(|i| numbers[i].to_bits());
+    let least = bits.iter().fold(u32::MAX, |least, bits| least.min(*bits));
+    let is_least = std::array::from_fn(|i| u32::from(bits[i] == least));
+    (mask_of(&is_least).trailing_zeros() as usize, f32::from_bits(least))
+}
+
 /// The tree.
 pub struct WideKdTree {
     /// Nodes by level from the root, which has 2^first children.
@@ -75,6 +85,17 @@ impl WideKdTree {
             }
         }
         WideKdTree { nodes, levels }
+    }
+
+    /// Returns a leaf whose box is about the nearest to `p`, without a search; there is one.
+    #[inline]
+    pub fn near_leaf(&self, p: Vec3) -> usize {
+        let (p, mut node) = (p.to_array(), 0);
+        for first in &self.levels {
+            let distances = self.nodes[first + node].distances_sq(p);
+            node = LANES * node + least_lane(&distances).0;
+        }
+        node
     }
 
     /// Calls `visit` for leaves whose boxes are within a radius of `p`: the nearest first, then roughly by distance.

@@ -8,7 +8,7 @@ mod shared;
 mod spec;
 mod value;
 
-pub use shared::{COMPENSATION, INSPECT, PAPER, PATCHES, SHARE};
+pub use shared::{COMPENSATION, INSPECT, PAPER, PATCHES, PHOTON_ENDS, SHARE};
 pub use spec::{DOWN, JudgedBy, Levels, Spec, UP};
 pub use value::{Assign, Choice, Parsed, Value};
 

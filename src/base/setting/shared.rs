@@ -31,3 +31,13 @@ pub static COMPENSATION: Spec = Spec::new(
 /// Images that show how the image was made.
 pub static INSPECT: Spec =
     Spec::new("inspect", "Write additional layers and PNG files that show how the image was made", "").flag();
+
+/// Ends of paths by photons.
+pub static PHOTON_ENDS: Spec = Spec::new(
+    "photon_ends",
+    "End the paths of denoised images by photons, at the diffuse surfaces that light those in view. Faster, with small \
+     errors near edges of light",
+    "Photon map",
+)
+.values(&["on", "off"])
+.judged_by(JudgedBy::Flip);

@@ -7,7 +7,7 @@ use base::progress::Control;
 use base::stats::Stage;
 use std::sync::Arc;
 use transport::eye::EyeSettings;
-use transport::irradiance::PathEnds;
+use transport::irradiance::{EndsWanted, PathEnds};
 use transport::learning::{LearnedLight, Learning};
 use transport::lights::{Family, LightPassSettings, Lights, LightsWanted};
 use world::view::View;
@@ -32,8 +32,7 @@ pub fn lights_wanted(
 pub struct LightStore {
     lights: Memo<LightsWanted, Lights>,
     learned: Memo<Learning, LearnedLight>,
-    /// Ends of paths, by seed and maximum path length.
-    path_ends: Memo<(u32, u32), PathEnds>,
+    path_ends: Memo<EndsWanted, PathEnds>,
     /// Caustic photons.
     pub photons: PhotonStore,
 }
@@ -53,26 +52,23 @@ impl LightStore {
         recall_own(&self.learned, wanted, control, |wanted| wanted.learn(world, view, control))
     }
 
-    /// Returns the light by which paths of the eye pass end behind specular lobes; `None` if they go on.
+    /// Returns the light by which the paths of a view's image end at diffuse surfaces; `None` if they go on.
     pub fn path_ends(
         &self,
         world: &World,
+        view: &View,
         settings: EyeSettings,
         control: &Control,
         tally: &mut Tally,
     ) -> Option<Arc<PathEnds>> {
-        let EyeSettings { seed, max_depth, .. } = settings;
-        PathEnds::exist(world, max_depth).then(|| {
-            let make = || {
-                recall(&self.path_ends, (seed, max_depth), control, |_| {
-                    PathEnds::new(world, max_depth, seed, control)
-                })
-            };
-            let ends = tally.time(Stage::LightPass, make);
-            tally.count("Eye/photon paths", ends.paths);
-            tally.rays(ends.rays);
-            ends
-        })
+        let EyeSettings { seed, max_depth, spp } = settings;
+        let samples = view.window.film_pixel_count().saturating_mul(spp.into());
+        let wanted = EndsWanted::new(samples, max_depth, seed)?;
+        let make = |wanted: &EndsWanted| PathEnds::new(world, *wanted, control);
+        let ends = tally.time(Stage::LightPass, || recall_own(&self.path_ends, wanted, control, make));
+        tally.count("Eye/photon paths", ends.paths);
+        tally.rays(ends.rays);
+        Some(ends)
     }
 
     /// Returns the virtual lights of `world`, and makes them if others were made last.

@@ -68,7 +68,8 @@ impl<'w> Prepared<'w> {
             let learn = || lights.learned(world, view, sampling.spp, control);
             (direct, tally.time(Stage::EyePass, learn))
         });
-        let path_ends = direct.as_ref().and_then(|_| lights.path_ends(world, settings, control, &mut tally));
+        let bends = direct.is_some() && world.specular.bends_light();
+        let path_ends = bends.then(|| lights.path_ends(world, view, settings, control, &mut tally)).flatten();
         let sources = known.as_ref().map(|(direct, known)| LightSources {
             direct,
             caustics: caustics.as_ref(),

@@ -73,6 +73,9 @@ pub trait Renderer: Settings + HasSampling {
     /// Makes renders return a denoiser's guides, if the method can.
     fn find_guides(&mut self) {}
 
+    /// Lets renders have errors that a denoiser's exceed, if that takes off noise.
+    fn expect_denoising(&mut self) {}
+
     /// Returns the light that is sampled.
     fn sampled(&self) -> Sampled {
         Sampled::Part
@@ -164,6 +167,9 @@ pub fn render(world: &World, view: &View, settings: &impl Renderer, control: &Co
 
 /// Samples per pixel of each of the two sets.
 pub const PILOT_SPP: u32 = 8;
+
+/// Samples per pixel of an image with as many photons for the ends of paths as pilots have.
+pub const ENDS_OF_PILOTS: u32 = 4;
 
 /// Light of some pixels by two independent sets of [`PILOT_SPP`] samples each.
 pub struct SampledPixels {

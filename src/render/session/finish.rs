@@ -159,8 +159,12 @@ impl<'a> Finish<'a> {
         self.look_at(view, method, spp).layers(self.world, self.wanted())
     }
 
-    /// Makes the method find a denoiser's guides, if it can and they are not kept as layers.
+    /// Tells the method if the image will be denoised. It then finds the guides, if it can and they are not kept as
+    /// layers.
     pub fn guided(&self, mut method: Method) -> Method {
+        if self.denoises() {
+            method.expect_denoising();
+        }
         if self.denoises() && !self.keeps_features() {
             method.find_guides();
         }

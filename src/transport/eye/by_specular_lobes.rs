@@ -91,7 +91,7 @@ impl LightBySpecularLobes {
                     break;
                 }
                 let pixel = window.film_pixel([x, y]);
-                let paths = (0..samples).map(|sample| PathStart { pixel, sample, seed });
+                let paths = (0..samples).map(|sample| PathStart::new(pixel, sample, seed));
                 start(batch, paths, world, view, estimand, spp);
                 let (mut sum, mut finite) = (Rgb::ZERO, 0);
                 let lookups = CausticLookups::new(samples);

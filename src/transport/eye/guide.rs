@@ -60,11 +60,8 @@ pub(super) fn edges<'w, R: PathPolicy<'w>>(
     // Sums: light by delta lobes, light by delta and glossy lobes, roots of all light, squares of the first.
     let sums_of = |first: u32| {
         let (mut batch, mut counts, mut sums) = (Batch::default(), RayCounts::default(), [0.0; 4]);
-        let paths = (first..first + BATCH).map(|sample| PathStart {
-            pixel: view.window.spread_pixel(sample, seed),
-            sample,
-            seed,
-        });
+        let paths = (first..first + BATCH)
+            .map(|sample| PathStart::new(view.window.spread_pixel(sample, seed), sample, seed));
         let finite = |light: Rgb| if light.is_finite() { f64::from(luminance(light)) } else { 0.0 };
         // Without delta lobes there is nothing to aim at.
         let wanted = [(0, false), (1, true)].into_iter().filter(|(_, glossy)| *glossy || has_delta_lobes);

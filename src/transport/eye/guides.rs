@@ -6,7 +6,8 @@
 //! Errors: values have 16 bits, hence 1e-5 of an albedo and 3e-5 of a normal.
 
 use super::seen::{FeatureSampler, FeatureSettings, PixelFeatures};
-use crate::paths::PathPolicy;
+use crate::irradiance::PathEnds;
+use crate::paths::{PathPolicy, Position};
 use base::film::{Image, Layer, Window};
 use base::math::Rgb;
 use glam::Vec3;
@@ -78,6 +79,8 @@ impl PackedGuides {
 pub struct FirstSurfaces {
     /// Number of consecutive paths per pixel.
     paths: u32,
+    /// Positions of the paths and their weights.
+    positions: Vec<Position>,
     pixels: Vec<Guide>,
     /// Paths that hit a mirror or glass first.
     chained: Vec<u32>,
@@ -85,11 +88,13 @@ pub struct FirstSurfaces {
 }
 
 impl FirstSurfaces {
-    /// Clears the surfaces seen. The next paths belong to `count` pixels, with `paths` paths each.
-    pub fn begin(&mut self, count: usize, paths: u32) {
+    /// Clears the surfaces seen. The next paths have these positions, in order, `paths` in each pixel.
+    pub fn begin(&mut self, positions: impl Iterator<Item = Position>, paths: u32) {
         self.paths = paths.max(1);
+        self.positions.clear();
+        self.positions.extend(positions);
         self.pixels.clear();
-        self.pixels.resize(count, Guide::default());
+        self.pixels.resize(self.positions.len() / self.paths as usize, Guide::default());
         self.chained.clear();
     }
 
@@ -98,19 +103,22 @@ impl FirstSurfaces {
     #[inline]
     pub fn see(&mut self, path: u32, albedo: Option<Rgb>, normal: Vec3) {
         match albedo {
-            Some(albedo) => self.pixels[(path / self.paths) as usize].add(Guide { albedo, normal }),
+            Some(albedo) => {
+                let weight = self.positions[path as usize].weight;
+                let guide = Guide { albedo: albedo * weight, normal: normal * weight };
+                self.pixels[(path / self.paths) as usize].add(guide);
+            }
             None => self.chained.push(path),
         }
     }
 
-    /// Traces the samples that hit mirrors or glass first. The samples of each film pixel are numbered from `first`.
+    /// Traces the samples that hit mirrors or glass first.
     pub fn finish(
         &mut self,
         world: &World,
         view: &View,
         settings: FeatureSettings,
         film_pixels: &[[u32; 2]],
-        first: u32,
     ) {
         if self.chained.is_empty() {
             return;
@@ -118,7 +126,9 @@ impl FirstSurfaces {
         self.behind.clear();
         self.behind.resize(film_pixels.len(), PixelFeatures::default());
         let paths = self.paths;
-        let samples = self.chained.iter().map(|path| ((path / paths) as usize, first + path % paths));
+        let positions = &self.positions;
+        let samples =
+            self.chained.iter().map(|path| ((path / paths) as usize, positions[*path as usize].ray));
         FeatureSampler { world, view, settings: &settings }.add(film_pixels, &mut self.behind, samples);
         for (guide, pixel) in self.pixels.iter_mut().zip(&self.behind) {
             guide.add(Guide { albedo: pixel.albedo, normal: pixel.normal });
@@ -138,6 +148,8 @@ pub struct FullPaths<'a> {
     pub learned: Option<&'a Learned>,
     /// First surfaces, if guides are requested.
     pub first_surfaces: Option<FirstSurfaces>,
+    /// Light by which paths end behind wide lobes; `None` if they go on.
+    pub path_ends: Option<&'a PathEnds>,
 }
 
 impl PathPolicy<'_> for FullPaths<'_> {
@@ -145,6 +157,10 @@ impl PathPolicy<'_> for FullPaths<'_> {
 
     fn learned(&self) -> Option<&Learned> {
         self.learned
+    }
+
+    fn path_ends(&self) -> Option<&PathEnds> {
+        self.path_ends
     }
 
     fn sees(&self) -> bool {

@@ -1,7 +1,7 @@
 //! Ends of paths by photons against paths that go on.
 
 use super::{DirectSampling, EyePass, EyeSettings, LightSources};
-use crate::irradiance::PathEnds;
+use crate::irradiance::{EndsWanted, PathEnds};
 use base::math::luminance;
 use base::progress::Control;
 use glam::Vec3;
@@ -15,8 +15,9 @@ fn paths_that_end_by_photons_find_as_much_light_with_less_noise_and_fewer_rays()
     scene.meshes.push(quad(Vec3::new(0.99, -1.0, -1.0), Vec3::Z * 2.0, Vec3::Y * 2.0, metal));
     let world = world(scene);
     let (settings, control) = (EyeSettings { spp: 64, seed: 3, max_depth: 32 }, Control::new());
-    assert!(PathEnds::exist(&world, 12) && !PathEnds::exist(&world, 11));
-    let ends = PathEnds::new(&world, settings.max_depth, 5, &control);
+    let wanted = |max_depth| EndsWanted::new(1 << 18, max_depth, 5);
+    assert!(wanted(8).is_some() && wanted(7).is_none());
+    let ends = PathEnds::new(&world, wanted(settings.max_depth).unwrap(), &control);
     let direct = DirectSampling::default();
     let [with, without] = [Some(&ends), None].map(|path_ends| {
         let sources = LightSources { direct: &direct, caustics: None, learned: None, path_ends };

@@ -8,7 +8,7 @@ use super::merge::{MergedPoint, MergedPoints};
 use super::{EyeCounts, EyeSettings, FeatureSettings, guide};
 use crate::caustics::Caustics;
 use crate::irradiance::PathEnds;
-use crate::paths::{Batch, Estimand, LightSamples, PathStart, RayCounts, ScatteredEdges, start};
+use crate::paths::{Batch, Estimand, LightSamples, PathStart, Position, RayCounts, ScatteredEdges, start};
 use base::math::{LANES, Rgb, luminance};
 use base::progress::Control;
 use std::ops::Range;
@@ -215,7 +215,8 @@ impl<'a, 'w> Tracer<'a, 'w> {
                 ends.found.clear();
                 ends.order.clear();
                 if let Some(first_surfaces) = &mut ends.first_surfaces {
-                    first_surfaces.begin(pixels.len(), n as u32);
+                    let own = pixels.iter().flat_map(|_| part.clone().map(Position::own));
+                    first_surfaces.begin(own, n as u32);
                 }
                 let mut counts = RayCounts::default();
                 let mut radiance = batch.trace(self.world, self.settings.max_depth, ends, &mut counts);
@@ -227,7 +228,7 @@ impl<'a, 'w> Tracer<'a, 'w> {
                 if let Some(first_surfaces) = &mut ends.first_surfaces {
                     let settings =
                         FeatureSettings { estimand: Estimand::Pixels, spp: self.settings.spp, seed };
-                    first_surfaces.finish(self.world, self.view, settings, pixels, part.start);
+                    first_surfaces.finish(self.world, self.view, settings, pixels);
                 }
                 let (found, mut rest) = (&ends.found[..], &ends.order[..]);
                 for i in 0..pixels.len() {
@@ -256,7 +257,7 @@ impl<'a, 'w> Tracer<'a, 'w> {
         let n = samples.len();
         let mut paths = pixels
             .iter()
-            .flat_map(|pixel| samples.clone().map(move |sample| PathStart { pixel: *pixel, sample, seed }));
+            .flat_map(|pixel| samples.clone().map(move |sample| PathStart::new(*pixel, sample, seed)));
         let add = |batch: &mut Batch, paths: &mut dyn Iterator<Item = PathStart>| {
             start(batch, paths, self.world, self.view, estimand, spp);
         };

@@ -11,10 +11,10 @@
 //! would have two biases of about 1/k. The photon itself would count, and estimates of regions with few photons would
 //! be used over larger areas.
 //!
-//! Deviations: on curved surfaces the disc stays flat. About 1e-4 of the light just behind a closed wall leaks through.
+//! Deviations: about 1e-4 of the light just behind a closed wall leaks through.
 //! Units: W/m².
 
-use super::disc::{self, SurfaceDisc};
+use super::disc::{self, MIN_COS, SurfaceDisc, surface_distance_sq};
 use super::map::{PhotonMap, Site};
 use crate::emission::Photon;
 use base::math::{LANES, Rgb, Vec3x16, lanes_in, mask_of};
@@ -28,11 +28,8 @@ use world::World;
 /// Maximum radius of a disc, as a fraction of the scene's diagonal. If photons are rarer, the estimate is too dark.
 const MAX_RADIUS: f32 = 0.05;
 
-/// Factor on distances along the normal.
-const NORMAL_SCALE: f32 = 3.0;
-
-/// Minimum cosine between the normals of surfaces that count as one.
-pub const MIN_COS: f32 = 0.7;
+/// Share of a disc from which on all of it is surface, but for rounding.
+const WHOLE: f32 = 0.99;
 
 /// Minimum share of a disc that is taken to be surface.
 const MIN_SHARE: f32 = 0.15;
@@ -48,13 +45,8 @@ pub struct IrradianceEstimate {
     pub irradiance: Rgb,
     /// Radius of the disc over which it is the mean.
     pub radius: f32,
-}
-
-/// Returns the squared distance between points of a surface, larger off its plane.
-#[inline]
-pub fn surface_distance_sq(offset: Vec3, normal: Vec3) -> f32 {
-    let height = offset.dot(normal) * NORMAL_SCALE;
-    offset.length_squared() + height * height
+    /// False if too little of the disc is surface: the irradiance is too dark.
+    pub is_sure: bool,
 }
 
 /// Computes the estimates at the sites of the map, in their order, and the number of rays. Returns `None` if `control`
@@ -179,16 +171,17 @@ fn estimate(
         None => (distances, radius * radius),
     };
     let radius = radius_sq.sqrt();
-    let mut irradiance = Rgb::ZERO;
+    let (mut irradiance, mut is_sure) = (Rgb::ZERO, true);
     if radius > 0.0 {
         inside.sort_unstable_by(order);
         let disc = SurfaceDisc::probe(world, at, radius);
         let kernel = |&(d, j): &(f32, u32)| photons[j as usize].flux * (1.0 - d / radius_sq);
-        let sum: Rgb = match disc.share < 1.0 {
+        let sum: Rgb = match disc.share < WHOLE {
             true => inside.iter().filter(|(_, j)| disc.sees(world, &photons[*j as usize])).map(kernel).sum(),
             false => inside.iter().map(kernel).sum(),
         };
+        is_sure = disc.share >= MIN_SHARE;
         irradiance = sum * (2.0 / (PI * radius_sq * disc.share.max(MIN_SHARE)));
     }
-    IrradianceEstimate { position: at.position, normal: at.normal, irradiance, radius }
+    IrradianceEstimate { position: at.position, normal: at.normal, irradiance, radius, is_sure }
 }

@@ -17,11 +17,14 @@ use world::shadow;
 /// Height of the ray origin over the disc, in radii.
 const HEIGHT: f32 = 0.3;
 
-/// Maximum distance of a hit on the disc from its plane, in radii.
-const FLATNESS: f32 = 0.2;
+/// Maximum share by a single ray.
+const MAX_SHARE: f32 = 4.0;
 
-/// Minimum cosine between the normals of the disc and of a hit.
-const MIN_COS: f32 = 0.7;
+/// Factor on distances along the normal.
+const NORMAL_SCALE: f32 = 3.0;
+
+/// Minimum cosine between the normals of surfaces that count as one.
+pub const MIN_COS: f32 = 0.7;
 
 /// Seed of the points on the disc.
 const SEED: u32 = 0xd15c;
@@ -29,10 +32,17 @@ const SEED: u32 = 0xd15c;
 /// Number of rays that probe a disc.
 pub const RAYS: u64 = LANES as u64 + 1;
 
+/// Returns the squared distance between points of a surface, larger off its plane.
+#[inline]
+pub fn surface_distance_sq(offset: Vec3, normal: Vec3) -> f32 {
+    let height = offset.dot(normal) * NORMAL_SCALE;
+    offset.length_squared() + height * height
+}
+
 /// Disc on a surface, probed from above its centre.
 pub struct SurfaceDisc {
     eye: Vec3,
-    /// Share of the disc that lies on the surface, weighted by the kernel.
+    /// Area of the surface near the disc, weighted by the kernel, over that of a flat disc.
     pub share: f32,
 }
 
@@ -58,13 +68,20 @@ impl SurfaceDisc {
         }
         let mut hits = Hits16::default();
         let met = world.accel.closest_hit16(&rays, u16::MAX, true, &mut hits);
-        let on_disc = lanes_in(met).filter(|&lane| {
-            let ray = rays.get(lane);
-            let off = (eye + ray.direction * hits.t[lane] - position).dot(normal);
+        let kernel = |distance_sq: f32| 1.0 - distance_sq / (radius * radius);
+        let share = |lane: usize| {
+            let (to_disc, t) = (rays.get(lane).direction, hits.t[lane]);
             let normal_there = world.geometric_normal(hits.geometry[lane], hits.primitive[lane]);
-            off.abs() <= FLATNESS * radius && normal_there.dot(normal).abs() >= MIN_COS
-        });
-        SurfaceDisc { eye, share: on_disc.count() as f32 / LANES as f32 }
+            let there = kernel(surface_distance_sq(eye + to_disc * t - position, normal));
+            if normal_there.dot(normal).abs() < MIN_COS || there <= 0.0 {
+                return 0.0;
+            }
+            // Both areas fill the same solid angle.
+            let area = t * t * (to_disc.dot(normal) / to_disc.dot(normal_there)).abs();
+            let in_plane = kernel((eye + to_disc - position).length_squared());
+            (area * there / in_plane.max(f32::MIN_POSITIVE)).min(MAX_SHARE)
+        };
+        SurfaceDisc { eye, share: lanes_in(met).map(share).sum::<f32>() / LANES as f32 }
     }
 
     /// True if a photon is visible from above.

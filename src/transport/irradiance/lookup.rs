@@ -1,11 +1,13 @@
-//! Look-up of irradiance at any point: the nearest estimate on a surface of similar orientation.
+//! Look-up of irradiance at any point: an estimate nearby on a surface of similar orientation. It is the nearest one in
+//! the point's cell of a kd-tree if its disc holds the point, else the nearest of all.
 //!
 //! Paper: Christensen 1999: one look-up at each hit of a final gathering, instead of an estimate.
 
 use super::PhotonMap;
-use super::density::{IrradianceEstimate, MIN_COS, estimates, surface_distance_sq};
-use base::kd_tree::{KdTree, WideKdTree};
-use base::math::{F32x16, LANES, Rgb, U32x16, Vec3x16, lanes_in, mask_of};
+use super::density::{IrradianceEstimate, estimates};
+use super::disc::{MIN_COS, surface_distance_sq};
+use base::kd_tree::{KdTree, WideKdTree, least_lane};
+use base::math::{F32x16, LANES, Rgb, Vec3x16};
 use base::progress::Control;
 use glam::Vec3;
 use world::World;
@@ -26,8 +28,8 @@ struct Leaf {
 pub struct IrradianceMap {
     leaves: Vec<Leaf>,
     index: WideKdTree,
-    /// Irradiance of each estimate, with the radius of the disc over which it is the mean.
-    irradiance: Vec<(Rgb, f32)>,
+    /// Irradiance of each estimate, with the radius of the disc over which it is the mean, and true if it is sure.
+    irradiance: Vec<(Rgb, f32, bool)>,
     /// Square of the maximum distance at which any estimate is used.
     reach_sq: f32,
 }
@@ -56,7 +58,7 @@ impl IrradianceMap {
         IrradianceMap {
             leaves: leaves.collect(),
             index: WideKdTree::new(index, &positions),
-            irradiance: estimates.iter().map(|e| (e.irradiance, e.radius)).collect(),
+            irradiance: estimates.iter().map(|e| (e.irradiance, e.radius, e.is_sure)).collect(),
             // The square is rounded up, so that an estimate at exactly this distance counts.
             reach_sq: (furthest * furthest).next_up(),
         }
@@ -68,35 +70,53 @@ impl IrradianceMap {
     }
 
     /// Looks up the irradiance at a point of a surface with unit normal `normal`, and the radius of the disc
-    /// over which it is the mean; `None` if there is no photon near, hence no light.
+    /// over which it is the mean, infinite if the irradiance is not sure. `None` if there is no photon near, hence no
+    /// light.
     #[inline]
     pub fn at(&self, point: Vec3, normal: Vec3) -> Option<(Rgb, f32)> {
-        let mut best = None;
-        self.index.leaves(point, self.reach_sq, |leaf, mut nearest| {
-            let leaf = &self.leaves[leaf];
-            for packet in 0..PACKETS {
-                let distances = distances_sq(&leaf.position[packet], &leaf.normal[packet], point, normal);
-                let mut nearer: U32x16 = [0; LANES];
-                for i in 0..LANES {
-                    nearer[i] = u32::from(distances[i] < nearest);
-                }
-                for i in lanes_in(mask_of(&nearer)) {
-                    if distances[i] < nearest {
-                        nearest = distances[i];
-                        best = Some((leaf.first as usize + packet * LANES + i, nearest));
-                    }
-                }
-            }
-            nearest
-        });
-        let (i, distance_sq) = best?;
-        let (irradiance, radius) = self.irradiance[i];
-        let reach = REACH * radius;
-        (distance_sq <= reach * reach).then_some((irradiance, radius))
+        if self.irradiance.is_empty() {
+            return None;
+        }
+        let mut best = Best { estimate: 0, distance_sq: f32::INFINITY };
+        self.leaves[self.index.near_leaf(point)].find_nearer(point, normal, &mut best);
+        if !self.holds(&best) {
+            best = Best { estimate: 0, distance_sq: self.reach_sq };
+            self.index.leaves(point, self.reach_sq, |leaf, _| {
+                self.leaves[leaf].find_nearer(point, normal, &mut best);
+                best.distance_sq
+            });
+        }
+        let (irradiance, radius, is_sure) = self.irradiance[best.estimate];
+        self.holds(&best).then_some((irradiance, if is_sure { radius } else { f32::INFINITY }))
+    }
+
+    /// Returns true if the disc of an estimate holds the point.
+    #[inline]
+    fn holds(&self, best: &Best) -> bool {
+        let reach = REACH * self.irradiance[best.estimate].1;
+        best.distance_sq <= reach * reach
     }
 }
 
+/// Estimate nearest to a point so far.
+struct Best {
+    estimate: usize,
+    distance_sq: f32,
+}
+
 impl Leaf {
+    /// Replaces `best` by an estimate of the leaf that is nearer to a point of a surface.
+    #[inline(always)]
+    fn find_nearer(&self, point: Vec3, normal: Vec3, best: &mut Best) {
+        for packet in 0..PACKETS {
+            let distances = distances_sq(&self.position[packet], &self.normal[packet], point, normal);
+            let (lane, least) = least_lane(&distances);
+            if least < best.distance_sq {
+                *best = Best { estimate: self.first as usize + packet * LANES + lane, distance_sq: least };
+            }
+        }
+    }
+
     fn new(estimates: &[IrradianceEstimate], first: usize, count: usize) -> Leaf {
         let mut leaf = Leaf { first: first as u32, ..Leaf::default() };
         for (i, e) in estimates[first..].iter().take(count.min(PACKETS * LANES)).enumerate() {
@@ -129,7 +149,7 @@ mod tests {
     use rayon::prelude::*;
 
     #[test]
-    fn the_nearest_estimate_on_the_right_side_is_found() {
+    fn an_estimate_on_the_right_side_whose_disc_holds_the_point_is_found() {
         // Two sides of a sheet, and a wall.
         let estimate = |i: u32| {
             let u = owen_sobol_2d(i, 5);
@@ -138,7 +158,13 @@ mod tests {
                 1 => (Vec3::new(u.x, u.y, 0.0), Vec3::NEG_Z),
                 _ => (Vec3::new(0.0, u.x, u.y), Vec3::X),
             };
-            IrradianceEstimate { position, normal, irradiance: Rgb::splat(i as f32), radius: 0.1 }
+            IrradianceEstimate {
+                position,
+                normal,
+                irradiance: Rgb::splat(i as f32),
+                radius: 0.1,
+                is_sure: !i.is_multiple_of(5),
+            }
         };
         let estimates: Vec<IrradianceEstimate> = (0..3000).map(estimate).collect();
         let (index, order) = KdTree::build(estimates.par_iter().map(|e| e.position));
@@ -151,11 +177,14 @@ mod tests {
             (Vec3::new(0.5, 0.4, 0.01), Vec3::new(0.6, 0.0, 0.8), true),
             (Vec3::new(5.0, 0.4, 0.01), Vec3::new(0.6, 0.0, 0.8), false),
         ] {
-            let rated = |e: &&IrradianceEstimate| surface_distance_sq(e.position - point, normal);
-            let same = estimates.iter().filter(|e| e.normal.dot(normal) >= MIN_COS);
-            let nearest = same.min_by(|a, b| rated(a).total_cmp(&rated(b))).unwrap();
-            let expected = near.then_some((nearest.irradiance, 0.1));
-            assert_eq!(map.at(point, normal), expected);
+            let found = map.at(point, normal);
+            assert_eq!(found.is_some(), near);
+            let Some((irradiance, radius)) = found else { continue };
+            let number = irradiance.x;
+            let estimate = estimates.iter().find(|e| e.irradiance.x == number).unwrap();
+            assert!(estimate.normal.dot(normal) >= MIN_COS);
+            assert!(surface_distance_sq(estimate.position - point, normal) <= 0.1f32.powi(2));
+            assert_eq!(radius, if estimate.is_sure { 0.1 } else { f32::INFINITY });
         }
         assert_eq!(map.at(Vec3::ZERO, Vec3::NEG_Y), None);
         assert_eq!(IrradianceMap::new(&[], &KdTree::empty()).at(Vec3::ZERO, Vec3::Z), None);

@@ -4,7 +4,7 @@
 //! - [`density`]: irradiance from the photons around a point; [`disc`]: the part of the disc around the point that
 //!   is surface;
 //! - [`lookup`]: look-ups of irradiance anywhere;
-//! - [`path_ends`]: ends of eye paths behind specular lobes.
+//! - [`path_ends`]: ends of eye paths at diffuse surfaces.
 
 pub mod density;
 mod disc;
@@ -12,6 +12,7 @@ mod lookup;
 pub mod map;
 mod path_ends;
 
+pub use disc::MIN_COS;
 pub use lookup::IrradianceMap;
 pub use map::PhotonMap;
-pub use path_ends::PathEnds;
+pub use path_ends::{Arrival, EndsWanted, PathEnds};

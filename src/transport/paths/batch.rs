@@ -53,7 +53,7 @@ impl Batch {
         counts: &mut RayCounts,
     ) -> std::vec::Drain<'_, Rgb> {
         if !R::STOPS_AT_DIFFUSE {
-            self.packets.iter_mut().for_each(|packet| packet.stage = [PathStage::Full as u32; LANES]);
+            self.packets.iter_mut().for_each(|packet| packet.stage = [PathStage::Bent as u32; LANES]);
         }
         if R::ONLY_BY_SPECULAR_LOBES {
             self.packets.iter_mut().for_each(|packet| packet.emission_throughput = Vec3x16::ZERO);

@@ -6,6 +6,7 @@
 mod arrival;
 mod batch;
 mod chain_ends;
+mod coverage;
 mod estimand;
 mod found_light;
 mod groups;
@@ -20,6 +21,7 @@ mod vertex;
 mod vertices;
 
 pub use batch::Batch;
+pub use coverage::{Coverage, Position};
 pub use estimand::{Estimand, eye_sampler};
 pub use found_light::RayCounts;
 pub(crate) use groups::{MAX_DISTANCE, MAX_HEIGHT, MIN_OUT_COS};

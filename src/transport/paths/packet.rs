@@ -5,7 +5,8 @@ use base::sampling::Samplers16;
 use embree::Rays16;
 use world::Interior;
 
-/// Light that a path finds; that of all paths with [`super::PathPolicy::STOPS_AT_DIFFUSE`] is `Full` from the start.
+/// Light that a path finds. Paths without [`super::PathPolicy::STOPS_AT_DIFFUSE`] are `Bent` from the start, and `Full`
+/// behind lobes that are not narrow.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u32)]
 pub(super) enum PathStage {

@@ -1,14 +1,15 @@
-//! Ends of paths behind specular lobes, by the light of photons ([`crate::irradiance::PathEnds`]).
+//! Ends of paths at diffuse surfaces, by the light of photons ([`crate::irradiance::PathEnds`]).
 
 use super::packet::{Packet, PathStage};
 use super::policy::PathPolicy;
+use crate::irradiance::Arrival;
 use base::math::{Rgb, lanes_in};
 use world::Surfaces16;
 use world::material::Bsdfs16;
 
 impl Packet {
-    /// Adds to `results` what diffuse surfaces reflect behind specular lobes, and removes their diffuse lobes. Returns
-    /// the lanes of `found` that have other lobes, or no such end.
+    /// Adds to `results` what diffuse surfaces reflect, and removes their diffuse lobes. Returns the lanes of `found`
+    /// that have other lobes, or no such end.
     pub fn end_by_photons<'w, R: PathPolicy<'w>>(
         &self,
         surfaces: &Surfaces16,
@@ -19,11 +20,14 @@ impl Packet {
     ) -> u16 {
         let Some(ends) = policy.path_ends() else { return found };
         let mut left = found;
-        for lane in lanes_in(found & (self.at(PathStage::Full) | self.at(PathStage::Bent))) {
+        let bent = if R::STOPS_AT_DIFFUSE { self.at(PathStage::Bent) } else { 0 };
+        for lane in lanes_in(found & (self.at(PathStage::Full) | bent)) {
             let (albedo, rest) = bsdfs.lane(lane).split_diffuse(bsdfs.wo(lane));
-            let (place, normal) = (surfaces.position.get(lane), surfaces.normal.get(lane));
-            let facing = if normal.dot(self.rays.get(lane).direction) < 0.0 { normal } else { -normal };
-            let Some(reflected) = ends.reflected(depth, place, facing, albedo) else { continue };
+            let normal = surfaces.normal.get(lane);
+            let normal = if normal.dot(self.rays.get(lane).direction) < 0.0 { normal } else { -normal };
+            let arrival =
+                Arrival { depth, length: surfaces.t[lane], position: surfaces.position.get(lane), normal };
+            let Some(reflected) = ends.reflected(&arrival, albedo) else { continue };
             results[self.slot[lane] as usize] += self.throughput.get(lane) * reflected;
             bsdfs.replace(lane, &rest);
             let goes_on = rest.has_smooth() || rest.has_delta();

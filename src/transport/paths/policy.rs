@@ -91,7 +91,7 @@ pub trait PathPolicy<'w> {
         ScatteredEdges::default()
     }
 
-    /// Returns the light by which paths end at diffuse surfaces behind specular lobes; `None` if they go on.
+    /// Returns the light by which paths end at diffuse surfaces; `None` if they go on.
     fn path_ends(&self) -> Option<&PathEnds> {
         None
     }

@@ -15,8 +15,17 @@ pub struct PathStart {
     pub pixel: [u32; 2],
     /// Number of the sample in its pixel.
     pub sample: u32,
+    /// Number of the sample whose position it has.
+    pub position: u32,
     /// Random seed.
     pub seed: u32,
+}
+
+impl PathStart {
+    /// Creates a path at the position of its sample.
+    pub fn new(pixel: [u32; 2], sample: u32, seed: u32) -> PathStart {
+        PathStart { pixel, sample, position: sample, seed }
+    }
 }
 
 /// Adds `paths` to the batch, in order. `samples` is the number of paths per pixel. With [`Estimand::EyeSamples`] they
@@ -35,7 +44,7 @@ pub fn start(
     });
     loop {
         let mut samplers = Samplers16::default();
-        let mut starts = [PathStart { pixel: [0; 2], sample: 0, seed: 0 }; LANES];
+        let mut starts = [PathStart { pixel: [0; 2], sample: 0, position: 0, seed: 0 }; LANES];
         let mut count = 0;
         for path in paths.by_ref().take(LANES) {
             starts[count] = path;
@@ -45,13 +54,14 @@ pub fn start(
             return;
         }
         let (mut pixels, mut numbers) = ([[0; 2]; LANES], [[0; 2]; LANES]);
-        for (i, PathStart { pixel, sample, seed }) in starts.into_iter().enumerate() {
+        for (i, PathStart { pixel, position, seed, .. }) in starts.into_iter().enumerate() {
             samplers.seed[i] = pixel_seed(pixel, seed);
-            samplers.index[i] = sample;
+            samplers.index[i] = position;
             pixels[i] = pixel;
-            numbers[i] = estimand.numbers(seed, sample).into();
+            numbers[i] = estimand.numbers(seed, position).into();
         }
         let mut jitter = samplers.point(1);
+        samplers.index = starts.map(|start| start.sample);
         if estimand != Estimand::Pixels {
             for (i, path) in starts.iter().enumerate() {
                 jitter.set(i, estimand.eye_sampler(path.pixel, path.seed, path.sample).1);

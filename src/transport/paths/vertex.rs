@@ -12,7 +12,8 @@
 //! | `Full` | of all lobes | all lobes as `Full` |
 //!
 //! With [`PathPolicy::path_ends`], `Bent` and `Full` paths find the light of diffuse lobes by photons. They sample
-//! light and go on by the other lobes alone.
+//! light and go on by the other lobes alone. Paths that do not stop at diffuse surfaces are `Bent` from the eye on, and
+//! end so as `Full` paths alone.
 //!
 //! So a path that stops at the first surface which ends a chain ([`PathPolicy`]) has one more edge, which finds
 //! emitters: the counterpart of the light samples in multiple importance sampling. If that edge hits a mirror, glass or
@@ -216,7 +217,8 @@ impl Packet {
         } else {
             found &= !blind;
         }
-        self.enter_stages(found, roles.scattered, delta, straight);
+        let narrow = if R::STOPS_AT_DIFFUSE { delta } else { narrow(samples) };
+        self.enter_stages(found, roles.scattered, [delta, narrow, straight]);
         if R::ONLY_BY_SPECULAR_LOBES {
             self.emission_throughput.keep(self.at(PathStage::Full) | self.at(PathStage::Bent));
         }
@@ -251,8 +253,8 @@ impl Packet {
 
     /// Moves paths that go on to their next stages.
     #[inline]
-    fn enter_stages(&mut self, found: u16, scattered: u16, delta: u16, straight: u16) {
-        let spread = found & self.at(PathStage::Bent) & !delta;
+    fn enter_stages(&mut self, found: u16, scattered: u16, [delta, narrow, straight]: [u16; 3]) {
+        let spread = found & self.at(PathStage::Bent) & !narrow;
         lanes_in(spread).for_each(|lane| self.stage[lane] = PathStage::Full as u32);
         for lane in lanes_in(found & scattered & !straight) {
             let bent = delta >> lane & 1 != 0;
@@ -307,6 +309,12 @@ impl Packet {
         }
         left
     }
+}
+
+/// Returns the lanes whose directions are sampled by narrow lobes.
+#[inline]
+fn narrow(samples: &BsdfSamples16) -> u16 {
+    mask_of(&samples.pdf.map(|pdf| u32::from(pdf > MIN_DENSITY_OF_IMAGES)))
 }
 
 /// Continues the cone around an edge of length `t`, whose next direction has the density `pdf`.

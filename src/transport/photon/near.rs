@@ -7,7 +7,7 @@
 //! Papers: Jensen 1996 (importance of near hits); Christensen 1999; Veach 1997 (multiple importance sampling).
 
 use super::indirect_light::{GatherCounts, IndirectLight};
-use crate::irradiance::density::MIN_COS;
+use crate::irradiance::MIN_COS;
 use base::math::{F32x16, Frame, LANES, Rgb, U32x16, Vec2x16, Vec3x16, lanes_in};
 use base::sampling::{Sampler, cosine_hemisphere, hash, power_heuristic};
 use embree::{Hits16, Rays16};

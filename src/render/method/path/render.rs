@@ -1,21 +1,24 @@
 //! The image: pixels in tiles, samples in passes.
 
-use super::pixels::sample_pixels;
+use super::pixels::{PixelSampling, sample_pixels};
 use super::tile::{PASS, PartialImage, PathTile, TILE, TileInputs};
 use crate::denoise::effort::Sampled;
 use crate::method::Output;
 use crate::method::lights::LightStore;
-use crate::method::renderer::{Renderer, Resumes, SampledPixels};
-use crate::method::sampling::method_settings;
+use crate::method::renderer::{ENDS_OF_PILOTS, Renderer, Resumes, SampledPixels};
+use crate::method::sampling::{HasSampling, method_settings};
 use crate::method::scale::{Move, PATHS};
 use crate::method::tally::Tally;
 use base::film::Image;
 use base::math::Rgb;
 use base::parallel::{ShortRuns, Workspaces};
 use base::progress::Control;
+use base::setting::PHOTON_ENDS;
 use base::stats::Stage;
 use rayon::prelude::*;
-use transport::eye::{PackedGuide, PackedGuides};
+use std::sync::Arc;
+use transport::eye::{EyeSettings, PackedGuide, PackedGuides};
+use transport::irradiance::PathEnds;
 use transport::paths::{Batch, Estimand};
 use world::World;
 use world::view::View;
@@ -23,6 +26,10 @@ use world::view::View;
 method_settings! {
     /// Settings of the method.
     spp = 64 {
+        /// True if photons end the paths of denoised images.
+        photon_ends: bool = true => [is PHOTON_ENDS];
+        /// True if the image will be denoised.
+        denoised: bool = false;
         /// Quantity that a pixel estimates.
         estimand: Estimand = Estimand::Pixels;
         /// True if renders return a denoiser's guides.
@@ -52,6 +59,10 @@ impl Renderer for Settings {
         self.guides = self.estimand == Estimand::Pixels;
     }
 
+    fn expect_denoising(&mut self) {
+        self.denoised = true;
+    }
+
     fn as_resumes(&self) -> Option<&dyn Resumes> {
         Some(self)
     }
@@ -73,7 +84,15 @@ impl Renderer for Settings {
         control: &Control,
     ) -> Option<SampledPixels> {
         let known = lights.learned(world, view, self.spp, control);
-        sample_pixels(world, view, self.max_depth, known.light.as_ref(), groups, control)
+        let ends = self.path_ends(world, lights, view, ENDS_OF_PILOTS, control, &mut Tally::default());
+        let sampling = PixelSampling {
+            estimand: Estimand::Pixels,
+            seed: 0,
+            max_depth: world.scene.path_limit(self.max_depth),
+            learned: known.light.as_ref(),
+            path_ends: ends.as_deref(),
+        };
+        sample_pixels(world, view, sampling, groups, control)
     }
 
     fn moves(&self) -> &'static [Move] {
@@ -95,6 +114,21 @@ impl Resumes for Settings {
 }
 
 impl Settings {
+    /// Returns the light by which the paths of an image with `spp` samples per pixel end, if it will be denoised.
+    fn path_ends(
+        &self,
+        world: &World,
+        lights: &LightStore,
+        view: &View,
+        spp: u32,
+        control: &Control,
+        tally: &mut Tally,
+    ) -> Option<Arc<PathEnds>> {
+        let settings = EyeSettings { spp, ..self.sampling().eye(&world.scene) };
+        let wanted = self.denoised && self.photon_ends;
+        wanted.then(|| lights.path_ends(world, view, settings, control, tally)).flatten()
+    }
+
     /// Renders the image, from the end of an interrupted one if there is one.
     fn image(
         &self,
@@ -114,8 +148,21 @@ impl Settings {
         let max_depth = world.scene.path_limit(self.max_depth);
         // Guides of earlier samples are lost, and paths of one edge meet no surface.
         let guides = self.guides && max_depth > 1 && tiles.iter().all(|tile| tile.samples == 0);
-        let inputs =
-            TileInputs { world, view, estimand, spp, seed, max_depth, guides, learned: known.light.as_ref() };
+        let ends = self.path_ends(world, lights, view, spp, control, &mut tally);
+        let chooses_positions = self.denoised && estimand == Estimand::Pixels;
+        let (learned, path_ends) = (known.light.as_ref(), ends.as_deref());
+        let inputs = TileInputs {
+            world,
+            view,
+            estimand,
+            spp,
+            seed,
+            max_depth,
+            guides,
+            chooses_positions,
+            learned,
+            path_ends,
+        };
         tally.time(Stage::Render, || render_tiles(&mut tiles, &inputs, control));
 
         for tile in &tiles {
@@ -208,6 +255,7 @@ fn variance(squares: &Image, samples: &Image<u32>) -> Image {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use glam::Vec3;
     use transport::eye::{Feature, FeatureSettings, Features, SeenPixels};
     use world::testkit::*;
 
@@ -240,5 +288,50 @@ mod tests {
         let rest = guided.render_rest(&world, &LightStore::default(), &partial, view, control);
         assert!(rest.complete && rest.guides.is_empty());
         assert!(render(&Settings { max_depth: Some(1), ..guided }).guides.is_empty());
+    }
+
+    /// Returns the mean image over seeds, and the variance of a pixel.
+    fn statistics(settings: &Settings, world: &WorldAndView, seeds: u32) -> (Image, f32) {
+        let images = (0..seeds).map(|seed| {
+            let settings = Settings { seed, ..*settings };
+            settings.render(world, &LightStore::default(), &world.view, &Control::new()).color
+        });
+        let images: Vec<Image> = images.collect();
+        let mut mean = Image::new(images[0].width, images[0].height);
+        for (i, pixel) in mean.pixels.iter_mut().enumerate() {
+            *pixel = images.iter().map(|image| image.pixels[i]).sum::<Rgb>() / seeds as f32;
+        }
+        let square = |image: &Image| {
+            image.pixels.iter().zip(&mean.pixels).map(|(a, b)| (*a - *b).length_squared()).sum::<f32>()
+        };
+        let variance = images.iter().map(square).sum::<f32>() / (seeds as f32 * mean.pixels.len() as f32);
+        (mean, variance)
+    }
+
+    #[test]
+    fn images_to_be_denoised_have_the_light_of_others_and_less_noise() {
+        let world = room_with_ball(None);
+        let plain = Settings { spp: 4, max_depth: Some(12), ..Settings::default() };
+        let positions = Settings { denoised: true, photon_ends: false, ..plain };
+        let ends = Settings { photon_ends: true, ..positions };
+        let (truth, _) = statistics(&Settings { spp: 256, ..plain }, &world, 4);
+        let variance = |settings: &Settings, most: f64| {
+            let (mean, variance) = statistics(settings, &world, 48);
+            let off = (mean.luminance() / truth.luminance() - 1.0).abs();
+            assert!(off < most, "{off}");
+            variance
+        };
+        let variances = [variance(&plain, 0.01), variance(&positions, 0.01), variance(&ends, 0.02)];
+        assert!(variances[2] < 0.5 * variances[0], "{variances:?}");
+        // Edges of an emitter in view.
+        let mut scene = scene(camera(Vec3::Z * 3.0, Vec3::ZERO, 0.3), [32, 32]);
+        let black = add_material(&mut scene, diffuse(Rgb::ZERO));
+        let lamp = quad(Vec3::new(-0.45, -0.35, 0.0), Vec3::X * 0.8, Vec3::new(0.2, 0.7, 0.0), black);
+        scene.meshes.push(emitting(lamp, Rgb::ONE));
+        let world = world::testkit::world(scene);
+        let [(truth, of_own), (mean, chosen)] =
+            [plain, positions].map(|settings| statistics(&settings, &world, 48));
+        assert!((mean.luminance() / truth.luminance() - 1.0).abs() < 0.003);
+        assert!(chosen < 0.5 * of_own, "{chosen} {of_own}");
     }
 }

@@ -3,7 +3,8 @@
 use base::film::{ExrFile, Image, Layer, SAMPLES};
 use base::math::Rgb;
 use transport::eye::{FeatureSettings, FirstSurfaces, FullPaths, Guide};
-use transport::paths::{Batch, Estimand, PathStart, RayCounts, start};
+use transport::irradiance::PathEnds;
+use transport::paths::{Batch, Coverage, Estimand, PathStart, Position, RayCounts, start};
 use world::World;
 use world::light::Learned;
 use world::view::View;
@@ -42,8 +43,12 @@ pub struct TileInputs<'a> {
     pub max_depth: u32,
     /// True if a denoiser's guides are wanted.
     pub guides: bool,
+    /// True if positions of paths are chosen by what they cover.
+    pub chooses_positions: bool,
     /// Learned light that guides light samples.
     pub learned: Option<&'a Learned>,
+    /// Light by which paths end; `None` if they go on.
+    pub path_ends: Option<&'a PathEnds>,
 }
 
 /// Pixels of a tile and their counts.
@@ -83,7 +88,8 @@ impl PathTile {
 
     /// Takes all samples up to `end` of every pixel of the tile of this index.
     pub fn render(&mut self, inputs: &TileInputs, index: usize, end: u32, batch: &mut Batch) {
-        let TileInputs { world, view, estimand, spp, seed, max_depth, guides, learned } = *inputs;
+        let TileInputs { world, view, estimand, spp, seed, max_depth, guides, learned, path_ends, .. } =
+            *inputs;
         let begin = self.samples;
         if begin >= end {
             return;
@@ -94,28 +100,39 @@ impl PathTile {
         if self.pixels.is_empty() {
             self.pixels = vec![RunningMean::default(); film_pixels.len()];
         }
-        let mut paths = FullPaths { learned, ..FullPaths::default() };
+        let positions = self.positions(inputs, &film_pixels, end);
+        let mut paths = FullPaths { learned, path_ends, ..FullPaths::default() };
         if guides {
             self.guides.resize(film_pixels.len(), Guide::default());
             paths.first_surfaces = Some(FirstSurfaces::default());
         }
         for first in (begin..end).step_by(BATCH as usize) {
             let samples = first..(first + BATCH).min(end);
-            let starts = film_pixels
-                .iter()
-                .flat_map(|&pixel| samples.clone().map(move |sample| PathStart { pixel, sample, seed }));
+            let position = |pixel: usize, sample: u32| match &positions {
+                Some(found) => found[pixel * (end - begin) as usize + (sample - begin) as usize],
+                None => Position::own(sample),
+            };
+            let numbers =
+                || (0..film_pixels.len()).flat_map(|i| samples.clone().map(move |sample| (i, sample)));
+            let starts = numbers().map(|(i, sample)| PathStart {
+                pixel: film_pixels[i],
+                sample,
+                position: position(i, sample).ray,
+                seed,
+            });
             start(batch, starts, world, view, estimand, spp);
             if let Some(first) = &mut paths.first_surfaces {
-                first.begin(film_pixels.len(), samples.len() as u32);
+                first.begin(numbers().map(|(i, sample)| position(i, sample)), samples.len() as u32);
             }
             let mut values = batch.trace(world, max_depth, &mut paths, &mut self.counts);
             if let Some(first) = &mut paths.first_surfaces {
                 let features = FeatureSettings { estimand: Estimand::Pixels, spp, seed };
-                first.finish(world, view, features, &film_pixels, samples.start);
+                first.finish(world, view, features, &film_pixels);
                 self.guides.iter_mut().enumerate().for_each(|(i, guide)| guide.add(first.of(i)));
             }
-            for pixel in &mut self.pixels {
+            for (i, pixel) in self.pixels.iter_mut().enumerate() {
                 for (sample, value) in samples.clone().zip(values.by_ref()) {
+                    let value = value * position(i, sample).weight;
                     self.nonfinite += u64::from(!value.is_finite());
                     pixel.add(sample, if value.is_finite() { value } else { Rgb::ZERO });
                 }
@@ -123,6 +140,24 @@ impl PathTile {
         }
         self.paths += u64::from(end - begin) * self.pixels.len() as u64;
         self.samples = end;
+    }
+
+    /// Chooses the positions of the paths of the pixels up to number `end`, if that is wanted.
+    fn positions(
+        &mut self,
+        inputs: &TileInputs,
+        film_pixels: &[[u32; 2]],
+        end: u32,
+    ) -> Option<Vec<Position>> {
+        let numbers = self.samples..end;
+        let mut found = Vec::with_capacity(film_pixels.len() * numbers.len());
+        let mut coverage = Coverage::new(inputs.world, inputs.view, inputs.seed, numbers);
+        let rays = u64::from(coverage.rays()) * film_pixels.len() as u64;
+        inputs.chooses_positions.then(|| {
+            film_pixels.iter().for_each(|pixel| coverage.add(*pixel, &mut found));
+            self.counts.rays += rays;
+            found
+        })
     }
 }
 

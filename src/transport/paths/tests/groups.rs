@@ -47,7 +47,7 @@ impl Traced {
         let [width, height] = world.view.window.film;
         let starts = (0..width * height * SPP).map(|i| {
             let pixel = [i / SPP % width, i / SPP / width];
-            PathStart { pixel, sample: i % SPP, seed }
+            PathStart::new(pixel, i % SPP, seed)
         });
         let spacing = in_groups.then(|| 0.5 * world.view.pixel_angle());
         let (mut batch, mut policy) =

@@ -34,7 +34,7 @@ fn ways_tell_mirrors_apart_and_nothing_else() {
     scene.meshes.push(quad(Vec3::new(-50.0, -50.0, 2.0), Vec3::Y * 100.0, Vec3::X * 100.0, grey));
     scene.meshes.push(quad(Vec3::new(-50.0, -50.0, -2.0), Vec3::X * 100.0, Vec3::Y * 100.0, grey));
     let world = world(scene);
-    let pixels = (0..64).map(|i| PathStart { pixel: [i % 8, i / 8], sample: 0, seed: 0 });
+    let pixels = (0..64).map(|i| PathStart::new([i % 8, i / 8], 0, 0));
     let (mut batch, mut ends) = (Batch::default(), ChainEnds::default());
     start(&mut batch, pixels, &world, &world.view, Estimand::EyeSamples { spp: 1, seed: 0 }, 1);
     batch.trace(&world, 8, &mut ends, &mut RayCounts::default());
@@ -73,7 +73,7 @@ fn textures_are_averaged_over_what_a_sample_stands_for_seen_in_mirrors_too() {
     scene.meshes.push(fine(quad(Vec3::new(-20.0, -1.0, -20.0), Vec3::X * 40.0, Vec3::Y * 40.0, noise)));
     let world = world(scene);
     let albedos = |samples: u32| {
-        let pixels = (0..64).map(|i| PathStart { pixel: [i % 8, i / 8], sample: i, seed: 0 });
+        let pixels = (0..64).map(|i| PathStart::new([i % 8, i / 8], i, 0));
         let (mut batch, mut albedos) = (Batch::default(), Albedos::default());
         start(&mut batch, pixels, &world, &world.view, Estimand::Pixels, samples);
         batch.trace(&world, 8, &mut albedos, &mut RayCounts::default());
@@ -100,8 +100,7 @@ fn light_has_the_same_mean_by_any_number_of_light_samples_and_less_noise_by_more
     // The ball's lobe scatters to where light samples fall, too.
     let world = room_with_ball(Some(rough_metal(0.3, 0.7)));
     let pixels = |count: u32, first: u32, seed: u32| -> Vec<f64> {
-        let starts =
-            (0..1 << 16).map(|i| PathStart { pixel: [i / 64 % 32, i / 64 / 32], sample: i % 64, seed });
+        let starts = (0..1 << 16).map(|i| PathStart::new([i / 64 % 32, i / 64 / 32], i % 64, seed));
         let (mut batch, mut lit) = (Batch::default(), Lit(LightSamples { count, first }));
         start(&mut batch, starts, &world, &world.view, Estimand::Pixels, 64);
         let found: Vec<Rgb> = batch.trace(&world, 8, &mut lit, &mut RayCounts::default()).collect();
