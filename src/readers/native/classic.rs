@@ -21,8 +21,8 @@ use crate::plan::Appearance;
 use crate::statements::note;
 use base::math::{Rgb, luminance};
 use scene::{
-    Coat, Distribution, Emission, Fresnel, Lobe, Material, Principled, Reflectance, Roughness, Share,
-    eta_of_specular,
+    Coat, Diffuse, Distribution, Emission, Fresnel, Lobe, Material, Principled, Reflectance, Roughness,
+    Share, eta_of_specular,
 };
 use std::path::Path;
 
@@ -178,6 +178,7 @@ impl<'b, 'a> LibraryReader<'b, 'a> {
                 metallic: Share::Constant(metal.x.min(1.0)),
                 roughness: Share::Constant(1.0 - (source.exponent.clamp(0.0, 1000.0) / 1000.0).sqrt()),
                 eta: eta_of_specular(source.specular.map_or(0.5, |specular| specular.x).min(1.0).into()),
+                diffuse: Diffuse::Lambertian,
                 ..Principled::default()
             };
             return Ok(Material { principled: Some(Box::new(principled)), ..Material::default() });
@@ -263,6 +264,7 @@ impl<'b, 'a> LibraryReader<'b, 'a> {
             anisotropic_rotation: source.principled.get("anisor").map_or(0.0, |turns| turns * TURN),
             spec_trans: Share::Constant(spec_trans),
             eta,
+            diffuse: Diffuse::Lambertian,
             ..Principled::default()
         };
         Ok(Material { principled: Some(Box::new(principled)), ..Material::default() })
