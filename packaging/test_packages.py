@@ -222,6 +222,12 @@ except KeyboardInterrupt:
 """
         self.assertEqual(self.check(text).stdout, "stopped\n")
 
+    def test_the_tests_of_the_module_pass(self):
+        tests = [PYTHON, "-B", "-m", "unittest", "discover", "-s", ROOT / "python/tests"]
+        done = subprocess.run(tests, cwd=FOLDER, env=CLEAN | {"LIGHTSPLAT_PROGRAM": str(WHEEL)}, capture_output=True, text=True)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertNotIn("skipped", done.stderr)
+
     def test_the_module_is_the_program_too(self):
         done = subprocess.run([PYTHON, "-m", "lightsplat", "info", "nothing"], env=CLEAN, capture_output=True)
         self.assertEqual(done.returncode, 3)

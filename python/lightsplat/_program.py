@@ -1,13 +1,16 @@
 """Search for the program."""
 
+from __future__ import annotations
+
 import os
 import sysconfig
 from pathlib import Path
+from typing import Iterator
 
 NAME = "lightsplat"
 
 
-def program():
+def program() -> str:
     """Returns the path of the program: `LIGHTSPLAT_PROGRAM` if it is set, else the program that the package installed."""
     chosen = os.environ.get("LIGHTSPLAT_PROGRAM")
     if chosen:
@@ -21,7 +24,7 @@ def program():
                             "or set LIGHTSPLAT_PROGRAM to its path")
 
 
-def _folders():
+def _folders() -> Iterator[Path]:
     """Yields the folders where installers put programs."""
     packages = Path(__file__).resolve().parent.parent
     # pip install --target

@@ -25,6 +25,7 @@ class Arguments(unittest.TestCase):
         self.check(["--aov=depth,normal"], aov=["depth", "normal"])
         self.check(["--env=1,0.5,0.25"], env=(1, 0.5, 0.25))
         self.check(["--define=X=1", "--define=Y=a"], define={"X": 1, "Y": "a"})
+        self.check(["--light=0.5", "--light=sky,0,60", "--hide=a"], light=["0.5", "sky,0,60"], hide="a")
 
     def test_booleans_become_flags(self):
         self.check(["--strict", "--reproducible"], strict=True, reproducible=True)

@@ -8,7 +8,6 @@ import textwrap
 import threading
 import time
 import unittest
-import warnings
 from pathlib import Path
 from unittest import mock
 
@@ -32,13 +31,16 @@ ENDLESS = """\
 """
 
 WARNS = """\
-    import json, sys
+    import json, os, sys
     for event in [
         {"event": "start"}, {"event": "unknown of later versions"}, {"event": "progress", "fraction": 0.5},
-        {"event": "warning", "text": "a.glb: no fog"}, {"event": "progress", "fraction": 1.0}, {"event": "end"},
+        {"event": "warning", "text": "a.glb: no fog"}, {"event": "progress", "fraction": 1.0},
+        {"event": "wrote", "files": ["a.exr"], "text": "wrote a.exr"}, {"event": "end"},
     ]:
         print(json.dumps(event), file=sys.stderr)
-    print(sys.argv[1:])
+    print("warning: a.glb: no hair", file=sys.stderr)
+    print("b.exr is there", file=sys.stderr)
+    print(sys.argv[1:], os.environ["LIGHTSPLAT_PROGRESS"])
 """
 
 
@@ -62,15 +64,23 @@ class Runs(unittest.TestCase):
         with self.assertRaises(ProcessLookupError):
             os.kill(process, 0)
 
-    def test_messages_become_warnings_and_calls(self):
+    def test_messages_become_records_and_calls(self):
         self.script(WARNS)
         parts = []
-        with warnings.catch_warnings(record=True) as caught:
-            warnings.simplefilter("always")
+        with self.assertLogs("lightsplat", "INFO") as logs:
             output = run(["render", "a.glb"], parts.append)
-        self.assertEqual(output.split(), b"['render', 'a.glb', '--progress=ndjson']".split())
+        self.assertEqual(output, b"['render', 'a.glb'] ndjson\n")
         self.assertEqual(parts, [0.5, 1.0])
-        self.assertEqual([(w.category, str(w.message)) for w in caught], [(lightsplat.SceneWarning, "a.glb: no fog")])
+        self.assertEqual([(record.levelname, record.getMessage()) for record in logs.records], [
+            ("WARNING", "a.glb: no fog"), ("INFO", "wrote a.exr"), ("WARNING", "a.glb: no hair"), ("INFO", "b.exr is there"),
+        ])
+
+    def test_lines_before_an_error_are_no_part_of_it(self):
+        self.script("import sys\nsys.exit(print('a note\\nerror: a.toml:3: no\\nb.toml: no', file=sys.stderr) or 3)\n")
+        with self.assertRaises(lightsplat.SceneError) as caught:
+            run(["info", "a.toml"])
+        self.assertEqual(str(caught.exception), "a.toml:3: no\nb.toml: no")
+        self.assertEqual((caught.exception.file, caught.exception.line), ("a.toml", 3))
 
     def test_interrupts_end_the_program(self):
         self.script(ENDLESS)
@@ -111,6 +121,25 @@ class Program(unittest.TestCase):
         self.assertEqual(caught.exception.code, code)
         self.assertIn(text, str(caught.exception))
         self.assertFalse(str(caught.exception).startswith("error:"))
+
+    def test_errors_name_file_and_line(self):
+        with tempfile.TemporaryDirectory() as folder:
+            scene = Path(folder, "scene: first.toml")
+            scene.write_text("resolution = [8, 8]\nfog = 1\n")
+            for call in (lightsplat.render, lightsplat.info):
+                with self.assertRaises(lightsplat.SceneError) as caught:
+                    call(scene)
+                self.assertEqual((caught.exception.file, caught.exception.line), (str(scene), 2), caught.exception)
+        with self.assertRaises(lightsplat.SceneError) as caught:
+            lightsplat.info("none.glb")
+        self.assertEqual((caught.exception.file, caught.exception.line), ("none.glb", None))
+        with self.assertRaises(lightsplat.UsageError) as caught:
+            lightsplat.render("cornell", crop=(0, 0, 0, 0))
+        self.assertEqual((caught.exception.file, caught.exception.line), (None, None))
+
+    def test_info_is_a_dictionary(self):
+        facts = lightsplat.info("cornell", camera=1)
+        self.assertEqual((facts["resolution"], len(facts["cameras"])), ([512, 512], 1))
 
     def test_errors_have_the_message_of_the_program(self):
         self.assert_error(lightsplat.UsageError, 2, "'--sppp", "cornell", "--sppp=3")

@@ -167,7 +167,12 @@ impl Plan<'_> {
             let mut sampler = Sampler::new(seed, number as u32);
             let (around, along) = (sampler.next_2d(), sampler.next_1d());
             let pose = shell.pose(around, along, [self.args.elevations, self.args.distances], narrow);
-            json!({ "file_path": format!("{number:04}.png"), "transform_matrix": pose })
+            let mut frame = json!({ "file_path": format!("{number:04}.png"), "transform_matrix": pose });
+            let light = model.lights.get(number - 1).and_then(|light| self.lights.get(*light));
+            if let Some(light) = light {
+                frame["light"] = light.as_str().into();
+            }
+            frame
         };
         let focal = 0.5 * width / (0.5 * fov).tan();
         json!({

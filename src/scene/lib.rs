@@ -30,7 +30,7 @@ pub use material::{Blend, Coat, Distribution, Fresnel, Lobe, Material, MaterialI
 pub use mesh::{Emission, Group, Mesh};
 pub use parameter::{Parameter, Reflectance, Roughness, Share};
 pub use pixel_filter::PixelFilter;
-pub use principled::{Principled, Stretch, eta_of_specular};
+pub use principled::{Diffuse, Principled, Stretch, eta_of_specular};
 pub use projector::{FovAxis, Projector};
 pub use requirements::Requirements;
 pub use texture::{AttributeTexture, Filter, Texels, Texture, TextureId, Textures, Wrap};

@@ -40,6 +40,8 @@ pub struct Principled {
     /// True if each passage through the surface multiplies light by the base's colour, as in glTF. Else it multiplies
     /// by the root, so that the way in and out has the colour, as in Mitsuba.
     pub tints_each_passage: bool,
+    /// Diffuse part of the dielectric.
+    pub diffuse: Diffuse,
     /// Strength of sheen over the dielectric: light scattered at grazing angles, as by fibres.
     pub sheen: Share,
     /// Fraction of the sheen that has the base's hue; the rest is white.
@@ -54,6 +56,16 @@ pub struct Principled {
     /// Both sides of a sheet are alike. Transmitted light keeps its direction, but for the roughness. There is no metal
     /// and no clear coat. Only the share `spec_trans` has specular reflection.
     pub thin: Option<Share>,
+}
+
+/// Diffuse part of a dielectric that is no thin sheet.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Diffuse {
+    /// Burley's, as in Mitsuba: half of the light is lost at grazing angles, and rough surfaces reflect more.
+    #[default]
+    Burley,
+    /// Lambertian, of the light that the dielectric does not reflect, as in glTF and Blender.
+    Lambertian,
 }
 
 /// Effect of an anisotropy `a` on microfacets of roughness α.
@@ -100,6 +112,7 @@ impl Default for Principled {
             spec_tint: none,
             spec_trans: none,
             tints_each_passage: false,
+            diffuse: Diffuse::default(),
             sheen: none,
             sheen_tint: none,
             clearcoat: none,

@@ -48,6 +48,9 @@ fn models_are_rendered_in_random_light_and_broken_ones_are_left_out() {
     assert_eq!(metadata["left_out"], serde_json::json!(["broken.glb"]));
     let lights = metadata["models"][0]["lights"].as_array().unwrap();
     assert!(lights.iter().all(|light| ["0.5,0.5,0.5", "sky,0,60"].contains(&light.as_str().unwrap())));
+    let list = json(&sandbox, "out/chair/transforms.json");
+    let lit: Vec<&Value> = list["frames"].as_array().unwrap().iter().map(|frame| &frame["light"]).collect();
+    assert!(lit == lights.iter().collect::<Vec<_>>(), "{list}");
     let jobs = fs::read_to_string(sandbox.path("out/jobs.toml")).unwrap();
     assert!(jobs.contains("half = true") && jobs.contains("aov = \"object\""), "{jobs}");
     // The job file gives the same images again.

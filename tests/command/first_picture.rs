@@ -167,6 +167,10 @@ fn an_image_is_developed_again_with_another_exposure_and_view() {
     }
     let stderr = sandbox.run(&["develop", "a.exr", "-o", "b.exr"]).expect(2).stderr;
     assert!(stderr.contains(".png"), "{stderr}");
+    let piped = sandbox.command(&["develop", "a.exr", "-o", "-", "--exposure", "0"]).output().unwrap().stdout;
+    let (width, height) = image::image_dimensions(sandbox.path("a.png")).unwrap();
+    let head = format!("P7\nWIDTH {width}\nHEIGHT {height}\nDEPTH 3\nMAXVAL 255\nTUPLTYPE RGB\nENDHDR\n");
+    assert!(piped == [head.as_bytes(), &first].concat());
 }
 
 #[test]

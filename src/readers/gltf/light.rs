@@ -50,6 +50,31 @@ pub(super) fn lumens_per_watt(
     }
 }
 
+/// Number of halvings of an interval of angles. Single precision has no more.
+const HALVINGS: u32 = 24;
+
+/// Returns the angle from which the intensity of a spot has to fall linearly to 0 at `outer`, to send as much light as
+/// the spot of the file. `inner` is the angle of the file.
+///
+/// The extension's intensity is quadratic in the cosine between both angles. Blender's is a smooth step in the cosine
+/// over a share of the cone, its blend; the exporter writes 1 minus this share as the ratio of the angles. Quadratic
+/// spots of small `inner` send less than a linear one from the axis, 4 % less at an `outer` of 1.5.
+fn linear_inner(inner: f32, outer: f32, is_blender: bool) -> f32 {
+    let [inner, outer] = [inner, outer].map(f64::from);
+    // Light over 2 π times the intensity on the axis.
+    let of_file = match is_blender {
+        true => (1.0 - outer.cos()) * 0.5 * (1.0 + inner / outer),
+        false => 1.0 - inner.cos() + (inner.cos() - outer.cos()) / 3.0,
+    };
+    let of_linear = |inner: f64| 1.0 - (outer.sin() - inner.sin()) / (outer - inner);
+    let [mut low, mut high] = [0.0, outer];
+    for _ in 0..HALVINGS {
+        let middle = 0.5 * (low + high);
+        if of_linear(middle) < of_file { low = middle } else { high = middle }
+    }
+    low as f32
+}
+
 /// Returns the light of a node, and its position. Scales do not change it.
 pub(super) fn read(
     light: &Light,
@@ -80,12 +105,13 @@ pub(super) fn read(
                 return Err(document.wrong(format!("{name}: the angles {inner} and {outer} make no cone")));
             }
             let what = "the edges of spot lights are linear in the angle, not smooth in its cosine";
-            report.note(what, "penumbras differ slightly", name);
+            report.note(what, "they send as much light; penumbras differ slightly", name);
+            let is_blender = Generator::read(document).is_blender();
             DeltaLight::Spot {
                 position,
                 direction,
                 intensity: power,
-                inner_angle: inner,
+                inner_angle: linear_inner(inner, outer, is_blender),
                 outer_angle: outer,
                 image: None,
             }
@@ -93,4 +119,39 @@ pub(super) fn read(
         _ => return Err(document.wrong(format!("{name} has an unknown type"))),
     };
     Ok((light, place.to_file.transform_point3(DVec3::ZERO)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use base::math::gauss_legendre;
+
+    #[test]
+    fn spots_send_the_light_of_their_file() {
+        let integrated = |outer: f64, intensity: &dyn Fn(f64) -> f64| -> f64 {
+            let at = |&(x, weight): &(f64, f64)| weight * outer * intensity(outer * x) * (outer * x).sin();
+            gauss_legendre(512).iter().map(at).sum()
+        };
+        for (inner, outer) in [(0.0, 0.9), (0.3, 0.5), (0.2, 1.5), (0.7, 0.7001)] {
+            let (blend, end) = (1.0 - inner / outer, f64::cos(outer));
+            let blender = |angle: f64| {
+                let t = ((angle.cos() - end) / (blend * (1.0 - end))).clamp(0.0, 1.0);
+                t * t * (3.0 - 2.0 * t)
+            };
+            let quadratic =
+                |angle: f64| ((angle.cos() - end) / (f64::cos(inner) - end)).clamp(0.0, 1.0).powi(2);
+            let of_file: [&dyn Fn(f64) -> f64; 2] = [&quadratic, &blender];
+            for (is_blender, of_file) in [false, true].into_iter().zip(of_file) {
+                let full = f64::from(linear_inner(inner as f32, outer as f32, is_blender));
+                let linear = |angle: f64| ((outer - angle) / (outer - full)).min(1.0);
+                let [expected, found] = [integrated(outer, of_file), integrated(outer, &linear)];
+                // A linear spot from its axis sends more than a quadratic one.
+                let limit = if full > 0.0 { 1e-3 } else { 0.04 };
+                assert!(
+                    (found / expected - 1.0).abs() < limit,
+                    "{inner} {outer} {is_blender}: {found} {expected}"
+                );
+            }
+        }
+    }
 }

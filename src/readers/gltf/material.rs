@@ -18,7 +18,7 @@ use gltf_json::extensions::material::Material as Extensions;
 use gltf_json::material::{AlphaMode, Material as Source};
 use gltf_json::texture::Info;
 use gltf_json::validation::Checked;
-use scene::{Emission, Lobe, Material, Principled, Reflectance, Relief, Share, Stretch};
+use scene::{Diffuse, Emission, Lobe, Material, Principled, Reflectance, Relief, Share, Stretch};
 use serde_json::Value;
 
 /// Extensions that are read from their JSON.
@@ -169,6 +169,7 @@ impl Importer<'_> {
             eta,
             spec_trans,
             tints_each_passage: true,
+            diffuse: Diffuse::Lambertian,
             ..Principled::default()
         };
         self.layers(&extensions.others, &mut principled, name)?;

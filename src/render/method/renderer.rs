@@ -168,9 +168,6 @@ pub fn render(world: &World, view: &View, settings: &impl Renderer, control: &Co
 /// Samples per pixel of each of the two sets.
 pub const PILOT_SPP: u32 = 8;
 
-/// Samples per pixel of an image with as many photons for the ends of paths as pilots have.
-pub const ENDS_OF_PILOTS: u32 = 4;
-
 /// Light of some pixels by two independent sets of [`PILOT_SPP`] samples each.
 pub struct SampledPixels {
     /// Mean luminance of each pixel, in order, by set.

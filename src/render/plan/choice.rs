@@ -114,7 +114,7 @@ impl Chooser {
             return None;
         }
         let Sampling { seed, max_depth, .. } = base.sampling();
-        let paths = path::Settings { seed, max_depth, denoised: true, ..path::Settings::default() };
+        let paths = path::Settings { seed, max_depth, ..path::Settings::default() };
         let pilot = Pilot::of(world, lights, view, [base, &Method::Path(paths)], control)?;
         let film_pixels = view.window.film_pixel_count();
         Some(Chooser { triangles: world.scene.seen_triangle_count(), pilot, film_pixels, paths })

@@ -37,7 +37,7 @@ pub(super) enum CoatInterface {
     Smooth(f32),
     /// Attenuation of the principled material's base, which takes half of the light at grazing angles.
     Burley,
-    /// Rough interface.
+    /// Rough interface, or microfacets over the base that take the light that they reflect.
     Rough(Arc<RoughCoat>),
 }
 
@@ -137,14 +137,25 @@ impl RoughCoat {
         let (coarse, fine) = (rule(32), rule(128));
         let (outside_rule, inside_rule) = if eta > 1.0 { (&coarse, &fine) } else { (&fine, &coarse) };
         let transmittance = AngleTable::new(|wo| transmittance(facets, eta, wo, outside_rule));
-        let mut max_transmittance = transmittance;
-        for i in 1..ANGLES {
-            max_transmittance.0[i] = max_transmittance.0[i].max(max_transmittance.0[i - 1]);
-        }
         let inside = Fresnel::Dielectric(1.0 / eta);
         let reflected = AngleTable::new(|wo| albedo(facets, &inside, wo, inside_rule).x);
         let internal_reflectance =
             (0..ANGLES).map(|i| reflected.0[i] * direction(i).z).sum::<f32>() * 2.0 / ANGLES as f32;
+        RoughCoat::with(transmittance, internal_reflectance)
+    }
+
+    /// Returns the tables of microfacets of this albedo, which let all other light pass. The base then reflects its
+    /// albedo times the light that passes from one direction.
+    pub fn over(albedo: &AngleTable<Rgb>) -> RoughCoat {
+        let transmittance = AngleTable(albedo.0.map(|reflected| 1.0 - reflected.x));
+        RoughCoat::with(transmittance, 1.0 - transmittance.mean())
+    }
+
+    fn with(transmittance: AngleTable<f32>, internal_reflectance: f32) -> RoughCoat {
+        let mut max_transmittance = transmittance;
+        for i in 1..ANGLES {
+            max_transmittance.0[i] = max_transmittance.0[i].max(max_transmittance.0[i - 1]);
+        }
         RoughCoat {
             mean_transmittance: transmittance.mean(),
             transmittance,

@@ -28,8 +28,8 @@ impl Layers {
     pub fn new(material: &Material, roughness: RoughnessValues, most: usize, tables: &mut Tables) -> Layers {
         let first = match &material.principled {
             Some(principled) => {
-                let (colours, lobes) = PrincipledColours::new(principled, roughness, most, tables);
-                let base = BaseModel::new(None, CoatInterface::Burley);
+                let (colours, interface, lobes) = PrincipledColours::new(principled, roughness, most, tables);
+                let base = BaseModel::new(None, interface);
                 let colours = LayerColours::Principled(colours);
                 Layers { colours, base, black: false, coated: true, lobes }
             }

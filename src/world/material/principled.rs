@@ -1,8 +1,13 @@
 //! Principled materials as a base and lobes, whose colours follow from the parameters of the material.
 //!
-//! Deviations: the last of more than [`MAX_LOBES`] lobes are left out. Only textures that mix metal, glass, varnish and
-//! sheen at one point need as many.
+//! A Lambertian base gets the light that the dielectric does not reflect, and sends on what the dielectric lets pass. A
+//! base of albedo ρ under a dielectric of albedo E reflects ρ (1 - E), as in Blender. Appendix B of the glTF
+//! specification has 1 - F for 1 - E, F at the half-way vector.
+//!
+//! Deviations: E is tabulated for steps of a textured roughness. The last of more than [`MAX_LOBES`] lobes are left
+//! out. Only textures that mix metal, glass, varnish and sheen at one point need as many.
 
+use super::base::CoatInterface;
 use super::lobe::{
     AnisotropicLobe, ClearCoat, Grazing, GrazingKind, LobeModel, MAX_LOBES, Passage, RoughInterface,
     RoughLobe, Thin, ThinFacets,
@@ -12,7 +17,7 @@ use super::model::Colours;
 use super::roughness::RoughnessValues;
 use super::tables::Tables;
 use base::math::{Rgb, luminance};
-use scene::{Distribution, Fresnel, Principled, Share, TextureId};
+use scene::{Diffuse, Distribution, Fresnel, Principled, Share, TextureId};
 
 /// Minimum roughness α, as in Mitsuba.
 const MIN_ALPHA: f32 = 1e-3;
@@ -159,7 +164,7 @@ impl LobeBuilder<'_> {
             all.push((PrincipledLobe::Transmission, self.interface(Passage::Refraction, false)));
             all.push((PrincipledLobe::Inside, self.interface(Passage::Reflection, true)));
         }
-        if is_dielectric && not_all(p.spec_trans) {
+        if is_dielectric && not_all(p.spec_trans) && p.diffuse == Diffuse::Burley {
             all.push((PrincipledLobe::Retro, LobeModel::Grazing(tables.retro(self.roughness))));
         }
         if some(p.clearcoat) {
@@ -179,7 +184,7 @@ impl LobeBuilder<'_> {
             all.extend(self.reflection());
             // Burley 2015, figure 15.
             let roughness = (0.65 * p.eta - 0.35) * self.roughness;
-            let facets = Microfacets::new(Distribution::Ggx, (roughness * roughness).max(MIN_ALPHA));
+            let facets = ggx(roughness);
             let facets = match (LobeBuilder { facets, ..*self }).brushed() {
                 Some(alpha) => {
                     let lobe = AnisotropicLobe::new(Distribution::Ggx, alpha, Fresnel::One);
@@ -252,6 +257,11 @@ impl LobeBuilder<'_> {
     }
 }
 
+/// Returns the microfacets of a roughness, the square root of α.
+fn ggx(roughness: f32) -> Microfacets {
+    Microfacets::new(Distribution::Ggx, (roughness * roughness).max(MIN_ALPHA))
+}
+
 /// Returns true if a share may differ from 0.
 fn some(share: Share) -> bool {
     share != Share::Constant(0.0)
@@ -263,20 +273,28 @@ fn not_all(share: Share) -> bool {
 }
 
 impl PrincipledColours {
-    /// Prepares a material; returns its lobes, too, at most `most` of them. Most lack their tables of albedo.
+    /// Prepares a material; returns the surface over its base, and its lobes, too, at most `most` of them. Most lobes
+    /// lack their tables of albedo.
     pub fn new(
         parameters: &Principled,
         roughness: RoughnessValues,
         most: usize,
         tables: &mut Tables,
-    ) -> (PrincipledColours, Vec<LobeModel>) {
+    ) -> (PrincipledColours, CoatInterface, Vec<LobeModel>) {
         let anisotropy = roughness.alpha(&parameters.anisotropic).clamp(0.0, 1.0);
+        let of_layer = roughness.alpha_of_coat(&parameters.roughness);
         let roughness = roughness.alpha(&parameters.roughness);
-        let facets = Microfacets::new(Distribution::Ggx, (roughness * roughness).max(MIN_ALPHA));
+        let facets = ggx(roughness);
         let mut all = LobeBuilder { parameters, roughness, anisotropy, facets }.all(tables);
         all.truncate(most);
         let (kinds, lobes) = all.into_iter().unzip();
-        (PrincipledColours { parameters: Box::new(parameters.clone()), lobes: kinds }, lobes)
+        let interface = match parameters.diffuse {
+            Diffuse::Lambertian if parameters.thin.is_none() && not_all(parameters.metallic) => {
+                CoatInterface::Rough(tables.layer(ggx(of_layer), parameters.eta))
+            }
+            Diffuse::Burley | Diffuse::Lambertian => CoatInterface::Burley,
+        };
+        (PrincipledColours { parameters: Box::new(parameters.clone()), lobes: kinds }, interface, lobes)
     }
 
     /// Returns true if any colour is textured.

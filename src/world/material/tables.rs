@@ -12,6 +12,8 @@ use std::sync::Arc;
 #[derive(Default)]
 pub(super) struct Tables {
     coats: Vec<(Microfacets, f32, Arc<RoughCoat>)>,
+    /// Coats that take the light that they reflect.
+    layers: Vec<(Microfacets, f32, Arc<RoughCoat>)>,
     albedos: Vec<(Microfacets, Fresnel, Arc<AngleTable<Rgb>>)>,
     /// Anisotropic lobes and their albedos.
     anisotropic: Vec<(AnisotropicLobe, Arc<AngleTable<Rgb>>)>,
@@ -31,6 +33,16 @@ impl Tables {
         let coat = Arc::new(RoughCoat::new(&facets, eta));
         self.coats.push((facets, eta, coat.clone()));
         coat
+    }
+
+    /// Returns the tables of dielectric microfacets that take the light that they reflect from a base below.
+    pub fn layer(&mut self, facets: Microfacets, eta: f32) -> Arc<RoughCoat> {
+        if let Some((_, _, layer)) = self.layers.iter().find(|l| l.0 == facets && l.1 == eta) {
+            return layer.clone();
+        }
+        let layer = Arc::new(RoughCoat::over(&self.albedo(facets, Fresnel::Dielectric(eta))));
+        self.layers.push((facets, eta, layer.clone()));
+        layer
     }
 
     /// Returns the albedo by angle of an anisotropic lobe. If `is_level`, the lobe is one of many of a textured

@@ -19,8 +19,8 @@ use crate::testkit::textured_materials as scene;
 use ::base::math::Rgb;
 use glam::{Vec2, Vec3};
 use scene::{
-    Blend, Coat, Distribution, Fresnel, Lobe, Material, MaterialId, Principled, Reflectance, Roughness,
-    TextureId,
+    Blend, Coat, Diffuse, Distribution, Fresnel, Lobe, Material, MaterialId, Principled, Reflectance,
+    Roughness, TextureId,
 };
 
 /// Runs `f` on the BSDF of an untextured material.
@@ -126,6 +126,7 @@ fn principled_materials() -> Vec<Material> {
     vec![
         principled("principled_plain", of(0.0, 0.5)),
         principled("principled_metal", of(1.0, 0.4)),
+        principled("principled_layers", Principled { diffuse: Diffuse::Lambertian, ..of(0.2, 0.6) }),
         principled("principled_mixed", mixed),
         principled("principled_brushed", Principled { anisotropic: 0.6.into(), ..of(0.5, 0.5) }),
     ]

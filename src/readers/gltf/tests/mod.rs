@@ -94,6 +94,7 @@ fn nodes_place_instances_of_meshes() {
     }
     assert!(loaded.scene.meshes[0].normals[0].distance(Vec3::X) < 1e-6);
     let brass = principled(&loaded, "brass");
+    assert_eq!(brass.diffuse, scene::Diffuse::Lambertian);
     assert_eq!(brass.base_color, Reflectance::Constant(Vec3::new(0.9, 0.7, 0.3)));
     assert_eq!((brass.metallic, brass.roughness), (Share::Constant(1.0), Share::Constant(0.4)));
     // The model has no camera; the default camera sees all of it.
@@ -156,7 +157,7 @@ fn lights_have_positions_directions_and_units() {
     assert_eq!(directional, DeltaLight::Directional { direction: Vec3::NEG_Z, irradiance: power });
     assert!(matches!(
         spot,
-        DeltaLight::Spot { direction: Vec3::NEG_Z, inner_angle: 0.2, outer_angle: 0.5, .. }
+        DeltaLight::Spot { direction: Vec3::NEG_Z, inner_angle: 0.1..0.4, outer_angle: 0.5, .. }
     ));
 
     // A scene file overrides the lights, rotates the model, and selects the lights only.

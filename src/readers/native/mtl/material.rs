@@ -22,8 +22,8 @@ use crate::plan::Appearance;
 use crate::statements::note;
 use base::math::{Rgb, luminance};
 use scene::{
-    Coat, Distribution, Emission, Fresnel, Lobe, Material, Principled, Reflectance, Roughness, Share,
-    eta_of_specular,
+    Coat, Diffuse, Distribution, Emission, Fresnel, Lobe, Material, Principled, Reflectance, Roughness,
+    Share, eta_of_specular,
 };
 use std::f32::consts::TAU;
 
@@ -135,6 +135,7 @@ impl LibraryReader<'_, '_> {
                 metallic: Share::Constant(metal.x.min(1.0)),
                 roughness: Share::Constant(1.0 - (exponent.clamp(0.0, 1000.0) / 1000.0).sqrt()),
                 eta: eta_of_specular(given.map_or(0.5, |specular| specular.x).min(1.0).into()),
+                diffuse: Diffuse::Lambertian,
                 ..Principled::default()
             }));
         }
@@ -208,6 +209,7 @@ impl LibraryReader<'_, '_> {
             anisotropic_rotation: source.number("anisor").map_or(0.0, |turns| turns * TAU),
             spec_trans: Share::Constant(spec_trans),
             eta,
+            diffuse: Diffuse::Lambertian,
             ..Principled::default()
         })
     }

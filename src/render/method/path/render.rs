@@ -5,7 +5,7 @@ use super::tile::{PASS, PartialImage, PathTile, TILE, TileInputs};
 use crate::denoise::effort::Sampled;
 use crate::method::Output;
 use crate::method::lights::LightStore;
-use crate::method::renderer::{ENDS_OF_PILOTS, Renderer, Resumes, SampledPixels};
+use crate::method::renderer::{Renderer, Resumes, SampledPixels};
 use crate::method::sampling::{HasSampling, method_settings};
 use crate::method::scale::{Move, PATHS};
 use crate::method::tally::Tally;
@@ -17,7 +17,7 @@ use base::setting::PHOTON_ENDS;
 use base::stats::Stage;
 use rayon::prelude::*;
 use std::sync::Arc;
-use transport::eye::{EyeSettings, PackedGuide, PackedGuides};
+use transport::eye::{PackedGuide, PackedGuides};
 use transport::irradiance::PathEnds;
 use transport::paths::{Batch, Estimand};
 use world::World;
@@ -84,13 +84,13 @@ impl Renderer for Settings {
         control: &Control,
     ) -> Option<SampledPixels> {
         let known = lights.learned(world, view, self.spp, control);
-        let ends = self.path_ends(world, lights, view, ENDS_OF_PILOTS, control, &mut Tally::default());
         let sampling = PixelSampling {
             estimand: Estimand::Pixels,
             seed: 0,
             max_depth: world.scene.path_limit(self.max_depth),
             learned: known.light.as_ref(),
-            path_ends: ends.as_deref(),
+            // Noise does not show the bias of photons.
+            path_ends: None,
         };
         sample_pixels(world, view, sampling, groups, control)
     }
@@ -114,17 +114,16 @@ impl Resumes for Settings {
 }
 
 impl Settings {
-    /// Returns the light by which the paths of an image with `spp` samples per pixel end, if it will be denoised.
+    /// Returns the light by which paths end, if the image will be denoised.
     fn path_ends(
         &self,
         world: &World,
         lights: &LightStore,
         view: &View,
-        spp: u32,
         control: &Control,
         tally: &mut Tally,
     ) -> Option<Arc<PathEnds>> {
-        let settings = EyeSettings { spp, ..self.sampling().eye(&world.scene) };
+        let settings = self.sampling().eye(&world.scene);
         let wanted = self.denoised && self.photon_ends;
         wanted.then(|| lights.path_ends(world, view, settings, control, tally)).flatten()
     }
@@ -148,7 +147,7 @@ impl Settings {
         let max_depth = world.scene.path_limit(self.max_depth);
         // Guides of earlier samples are lost, and paths of one edge meet no surface.
         let guides = self.guides && max_depth > 1 && tiles.iter().all(|tile| tile.samples == 0);
-        let ends = self.path_ends(world, lights, view, spp, control, &mut tally);
+        let ends = self.path_ends(world, lights, view, control, &mut tally);
         let chooses_positions = self.denoised && estimand == Estimand::Pixels;
         let (learned, path_ends) = (known.light.as_ref(), ends.as_deref());
         let inputs = TileInputs {

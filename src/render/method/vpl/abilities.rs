@@ -6,7 +6,7 @@ use super::{Preset, Settings};
 use crate::method::Output;
 use crate::method::lights::LightStore;
 use crate::method::photon_store::FoundCaustics;
-use crate::method::renderer::{ENDS_OF_PILOTS, FormerFrames, PILOT_SPP, Renderer, SampledPixels, Walks};
+use crate::method::renderer::{FormerFrames, PILOT_SPP, Renderer, SampledPixels, Walks};
 use crate::method::sampling::HasSampling;
 use crate::method::scale::{CUTS, Demand, Move, SAMPLED};
 use crate::method::tally::Tally;
@@ -107,16 +107,11 @@ impl Renderer for Settings {
         let FoundCaustics { caustics, rays, shadow_rays, .. } =
             lights.photons.pilot(world, view, settings, control);
         let known = lights.learned(world, view, self.spp, control);
-        let of_ends = EyeSettings { spp: ENDS_OF_PILOTS, ..self.sampling().eye(&world.scene) };
-        let ends = world
-            .specular
-            .bends_light()
-            .then(|| lights.path_ends(world, view, of_ends, control, &mut Tally::default()));
         let sources = LightSources {
             direct: &direct,
             caustics: caustics.as_ref(),
             learned: known.light.as_ref(),
-            path_ends: ends.as_ref().and_then(|ends| ends.as_deref()),
+            path_ends: None,
         };
         let found = EyePass::pilot(world, view, settings, sources, groups, control);
         let EyePilot { luminances, photons, sampled, before } = found;

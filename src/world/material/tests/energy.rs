@@ -36,6 +36,11 @@ fn white_materials() -> Vec<(Material, f32)> {
             all.push((metal, if distribution == Distribution::Ggx { 1.0 } else { 1.0035 }));
         }
     }
+    for roughness in [0.0, 0.19, 0.3, 0.55, 0.9] {
+        let white = Principled { base_color: constant(Rgb::ONE), ..layered(roughness) };
+        let material = Material { principled: Some(Box::new(white)), ..Material::default() };
+        all.push((Material { name: format!("layers_{roughness}"), ..material }, 1.004));
+    }
     all.push((Material { diffuse: constant(Rgb::ONE), ..plastic(false) }, 1.003));
     all.push((Material { diffuse: constant(Rgb::ONE), ..plastic(true) }, 1.003));
     all
@@ -57,6 +62,29 @@ fn no_surface_reflects_more_than_it_receives() {
                 }
             }
         });
+    }
+}
+
+fn layered(roughness: f32) -> Principled {
+    Principled { diffuse: Diffuse::Lambertian, roughness: roughness.into(), ..Principled::default() }
+}
+
+/// The base of glTF and Blender reflects the share of the light that its dielectric does not.
+#[test]
+fn a_layered_base_reflects_what_the_dielectric_leaves() {
+    for (eta, roughness) in [(1.0, 1.0), (1.5, 1.0), (1.5, 0.5), (1.5, 0.2), (2.0, 0.35)] {
+        let of = |grey: f32| {
+            let base_color = constant(Rgb::splat(grey));
+            let principled = Principled { base_color, eta, ..layered(roughness) };
+            Material { principled: Some(Box::new(principled)), ..Material::default() }
+        };
+        for theta in [0.0, 0.5, 1.0, 1.3] {
+            let albedo =
+                |grey| with_bsdf(&of(grey), |bsdf| albedo_by_sampling(&bsdf, direction(theta, 0.4), 3).x);
+            let (specular, both) = (albedo(0.0), albedo(0.5));
+            let expected = specular + 0.5 * (1.0 - specular);
+            assert!((both - expected).abs() < 5e-3, "{eta} {roughness} {theta}: {both} {expected}");
+        }
     }
 }
 
