@@ -39,8 +39,8 @@ pub fn surface_distance_sq(offset: Vec3, normal: Vec3) -> f32 {
     offset.length_squared() + height * height
 }
 
-/// Returns the mean of samples, raised so that a quotient by it has the right mean: by Jensen's inequality, quotients by
-/// the means themselves are too large, to second order by the relative variance of the mean.
+/// Returns the mean of samples, raised so that a quotient by it has the right mean. By Jensen's inequality, quotients
+/// by the means themselves are too large: to second order by the relative variance of the mean.
 fn divisor(samples: &F32x16) -> f32 {
     let n = samples.len() as f32;
     let mean = samples.iter().sum::<f32>() / n;

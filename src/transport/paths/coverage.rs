@@ -4,8 +4,8 @@
 //! more eye rays divide the pixel into strata: the parts that see surfaces of one mesh and similar orientation. Every
 //! stratum has paths, at the positions of some of its rays, and counts in proportion to its rays. That is unbiased.
 //!
-//! Paper: stratified sampling with proportional allocation, e.g. Pharr, Jakob & Humphreys, *Physically Based Rendering*,
-//! section 8.2.
+//! Paper: Pharr, Jakob & Humphreys, *Physically Based Rendering*, 2023, section 2.2.1: stratified sampling, here with
+//! numbers of paths in proportion.
 //! Deviations: the smallest strata count as one if there are more strata than paths.
 
 use super::estimand::pixel_seed;
