@@ -167,6 +167,7 @@ impl Settings {
         for tile in &tiles {
             tally.count("Paths/total", tile.paths);
             tally.rays(tile.counts.rays);
+            tally.count("Rays/positions", tile.covering);
             tally.shadow_rays("Rays/shadow", tile.counts.shadow_rays);
         }
         let TileImages { color, squares, samples, guides } = TileImages::new(&tiles, view, guides);

@@ -64,6 +64,8 @@ pub struct PathTile {
     pub paths: u64,
     /// Rays traced in this run.
     pub counts: RayCounts,
+    /// Eye rays that chose positions in this run. They take much less time than others.
+    pub covering: u64,
     /// Radiances that were not finite and count as 0.
     pub nonfinite: u64,
 }
@@ -155,7 +157,7 @@ impl PathTile {
         let rays = u64::from(coverage.rays()) * film_pixels.len() as u64;
         inputs.chooses_positions.then(|| {
             film_pixels.iter().for_each(|pixel| coverage.add(*pixel, &mut found));
-            self.counts.rays += rays;
+            self.covering += rays;
             found
         })
     }
