@@ -223,7 +223,8 @@ fn quality_of_denoising_goes_with_the_work_or_is_as_asked() {
         sandbox.run(&[&base, more].concat()).expect(0)
     };
     single("noisy.exr", &["--aov", "albedo,normal"]);
-    single("clean.exr", &["--denoise", "--set", "denoise-quality=fast"]);
+    single("clean.exr", &["--denoise", "--set", "denoise-quality=fast", "--set", "keep-noisy=on"]);
+    assert_eq!(file(&sandbox, "clean.exr").layer("noisy").unwrap(), color(&sandbox, "noisy.exr"));
     sandbox.run(&["denoise", "noisy.exr", "-o", "later.exr", "--quality", "fast"]).expect(0);
     // But for guides of sixteen bits that paths find on their way.
     let [later, clean] = ["later.exr", "clean.exr"].map(|name| color(&sandbox, name));

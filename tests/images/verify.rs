@@ -173,8 +173,7 @@ fn references(world: &WorldAndView, estimand: Estimand, spp: u32) -> Vec<Image> 
     let row = |y: u32, seed: u32| -> Vec<Rgb> {
         let wanted: Vec<PixelPaths> =
             (0..width).map(|x| PixelPaths { pixel: [x, y], samples: spp / MEANS }).collect();
-        let seed = 0x00c0_ffee + seed;
-        let sampling = PixelSampling { estimand, seed, max_depth: depth, learned: None, path_ends: None };
+        let sampling = PixelSampling { estimand, seed: 0x00c0_ffee + seed, max_depth: depth, learned: None };
         let (row, _) = pixel_means(world, &world.view, sampling, &wanted, &mut RayCounts::default());
         row.into_iter().map(|mean| mean.as_vec3()).collect()
     };

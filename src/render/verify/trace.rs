@@ -144,13 +144,7 @@ impl Tracing<'_> {
                 return None;
             }
             let seed = hash(hash(settings.seed, SEED), round * MEANS as u32 + k as u32);
-            let sampling = PixelSampling {
-                estimand: settings.estimand,
-                seed,
-                max_depth,
-                learned: None,
-                path_ends: None,
-            };
+            let sampling = PixelSampling { estimand: settings.estimand, seed, max_depth, learned: None };
             let (means, nonfinite) = pixel_means(world, view, sampling, &wanted, &mut counts);
             for (&(pixel, weight, _), mean) in parts.iter().zip(means) {
                 pixels[pixel].means[k] += f64::from(weight) * mean;

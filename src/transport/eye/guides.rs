@@ -130,8 +130,13 @@ impl FirstSurfaces {
         let samples =
             self.chained.iter().map(|path| ((path / paths) as usize, positions[*path as usize].ray));
         FeatureSampler { world, view, settings: &settings }.add(film_pixels, &mut self.behind, samples);
-        for (guide, pixel) in self.pixels.iter_mut().zip(&self.behind) {
-            guide.add(Guide { albedo: pixel.albedo, normal: pixel.normal });
+        // Paths of a pixel that are chained see one surface, hence have one weight, but for merged strata.
+        let mut weights = vec![0.0; self.pixels.len()];
+        self.chained.iter().for_each(|path| {
+            weights[(path / paths) as usize] = positions[*path as usize].weight;
+        });
+        for ((guide, pixel), weight) in self.pixels.iter_mut().zip(&self.behind).zip(weights) {
+            guide.add(Guide { albedo: pixel.albedo * weight, normal: pixel.normal * weight });
         }
     }
 

@@ -157,7 +157,7 @@ fn lights_have_positions_directions_and_units() {
     assert_eq!(directional, DeltaLight::Directional { direction: Vec3::NEG_Z, irradiance: power });
     assert!(matches!(
         spot,
-        DeltaLight::Spot { direction: Vec3::NEG_Z, inner_angle: 0.1..0.4, outer_angle: 0.5, .. }
+        DeltaLight::Spot { direction: Vec3::NEG_Z, inner_angle: 0.125..0.127, outer_angle: 0.5, .. }
     ));
 
     // A scene file overrides the lights, rotates the model, and selects the lights only.

@@ -7,7 +7,6 @@ use base::progress::Control;
 use glam::DVec3;
 use rayon::prelude::*;
 use transport::eye::FullPaths;
-use transport::irradiance::PathEnds;
 use transport::paths::{Batch, Estimand, PathStart, RayCounts, start};
 use world::World;
 use world::light::Learned;
@@ -30,7 +29,7 @@ pub struct PixelPaths {
 }
 
 /// Sampling of single pixels.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 pub struct PixelSampling<'a> {
     /// Quantity that a pixel estimates.
     pub estimand: Estimand,
@@ -40,8 +39,6 @@ pub struct PixelSampling<'a> {
     pub max_depth: u32,
     /// Learned light that guides light samples.
     pub learned: Option<&'a Learned>,
-    /// Light by which paths end; `None` if they go on.
-    pub path_ends: Option<&'a PathEnds>,
 }
 
 /// Computes the mean radiance of each pixel over its paths.
@@ -54,8 +51,8 @@ pub fn pixel_means(
     wanted: &[PixelPaths],
     counts: &mut RayCounts,
 ) -> (Vec<DVec3>, u64) {
-    let PixelSampling { estimand, seed, max_depth, learned, path_ends } = sampling;
-    let mut paths = FullPaths { learned, path_ends, ..FullPaths::default() };
+    let PixelSampling { estimand, seed, max_depth, learned } = sampling;
+    let mut paths = FullPaths { learned, ..FullPaths::default() };
     let mut sums = vec![DVec3::ZERO; wanted.len()];
     let mut nonfinite = 0;
     let mut batch = Batch::default();
@@ -82,14 +79,16 @@ pub fn pixel_means(
     (sums, nonfinite)
 }
 
-/// Samples groups of film pixels by two sets of paths, each with a seed of its own; `None` if cancelled.
+/// Samples groups of film pixels by two sets of paths; `None` if cancelled.
 pub(super) fn sample_pixels(
     world: &World,
     view: &View,
-    sampling: PixelSampling,
+    max_depth: Option<u32>,
+    learned: Option<&Learned>,
     groups: &[Vec<[u32; 2]>],
     control: &Control,
 ) -> Option<SampledPixels> {
+    let max_depth = world.scene.path_limit(max_depth);
     let sample = |pixels: &Vec<[u32; 2]>| {
         let mut counts = RayCounts::default();
         let wanted: Vec<PixelPaths> =
@@ -98,8 +97,8 @@ pub(super) fn sample_pixels(
             if control.is_cancelled() {
                 return Vec::new();
             }
-            let (means, _) =
-                pixel_means(world, view, PixelSampling { seed, ..sampling }, &wanted, &mut counts);
+            let sampling = PixelSampling { estimand: Estimand::Pixels, seed, max_depth, learned };
+            let (means, _) = pixel_means(world, view, sampling, &wanted, &mut counts);
             means.into_iter().map(|mean| f64::from(luminance(mean.as_vec3()))).collect()
         });
         (luminances, counts)

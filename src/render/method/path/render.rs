@@ -1,6 +1,6 @@
 //! The image: pixels in tiles, samples in passes.
 
-use super::pixels::{PixelSampling, sample_pixels};
+use super::pixels::sample_pixels;
 use super::tile::{PASS, PartialImage, PathTile, TILE, TileInputs};
 use crate::denoise::effort::Sampled;
 use crate::method::Output;
@@ -84,15 +84,8 @@ impl Renderer for Settings {
         control: &Control,
     ) -> Option<SampledPixels> {
         let known = lights.learned(world, view, self.spp, control);
-        let sampling = PixelSampling {
-            estimand: Estimand::Pixels,
-            seed: 0,
-            max_depth: world.scene.path_limit(self.max_depth),
-            learned: known.light.as_ref(),
-            // Noise does not show the bias of photons.
-            path_ends: None,
-        };
-        sample_pixels(world, view, sampling, groups, control)
+        // Full paths: noise does not show the bias of photons.
+        sample_pixels(world, view, self.max_depth, known.light.as_ref(), groups, control)
     }
 
     fn moves(&self) -> &'static [Move] {

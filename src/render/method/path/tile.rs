@@ -151,13 +151,12 @@ impl PathTile {
         film_pixels: &[[u32; 2]],
         end: u32,
     ) -> Option<Vec<Position>> {
-        let numbers = self.samples..end;
-        let mut found = Vec::with_capacity(film_pixels.len() * numbers.len());
-        let mut coverage = Coverage::new(inputs.world, inputs.view, inputs.seed, numbers);
-        let rays = u64::from(coverage.rays()) * film_pixels.len() as u64;
         inputs.chooses_positions.then(|| {
+            let numbers = self.samples..end;
+            let mut found = Vec::with_capacity(film_pixels.len() * numbers.len());
+            let mut coverage = Coverage::new(inputs.world, inputs.view, inputs.seed, numbers);
             film_pixels.iter().for_each(|pixel| coverage.add(*pixel, &mut found));
-            self.covering += rays;
+            self.covering += u64::from(coverage.rays()) * film_pixels.len() as u64;
             found
         })
     }
