@@ -70,10 +70,7 @@ pub trait Renderer: Settings + HasSampling {
         false
     }
 
-    /// Makes renders return a denoiser's guides, if the method can.
-    fn find_guides(&mut self) {}
-
-    /// Lets renders have errors that a denoiser's exceed, if that takes off noise.
+    /// Lets renders have errors that a denoiser's exceed, if that takes off noise, and return its guides.
     fn expect_denoising(&mut self) {}
 
     /// Returns the light that is sampled.

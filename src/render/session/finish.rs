@@ -159,14 +159,10 @@ impl<'a> Finish<'a> {
         self.look_at(view, method, spp).layers(self.world, self.wanted())
     }
 
-    /// Tells the method if the image will be denoised. It then finds the guides, if it can and they are not kept as
-    /// layers.
+    /// Tells the method if the image will be denoised.
     pub fn guided(&self, mut method: Method) -> Method {
         if self.denoises() {
             method.expect_denoising();
-        }
-        if self.denoises() && !self.keeps_features() {
-            method.find_guides();
         }
         method
     }
@@ -183,13 +179,12 @@ impl<'a> Finish<'a> {
             return output;
         }
         // Surfaces seen take more memory than their layers, so they are dropped before denoising.
-        let found = std::mem::take(&mut output.guides);
-        let layers = match !self.keeps_features() && !found.is_empty() {
-            true => found,
-            false => {
+        let layers = match output.guides.is_empty() || self.keeps_features() {
+            true => {
                 let features = || self.features(self.view, method, method.spp());
                 output.stats.time(Stage::EyePass, features)
             }
+            false => Vec::new(),
         };
         self.apply_to_layers(method, layers, output)
     }
@@ -249,6 +244,8 @@ impl<'a> Finish<'a> {
             give_back();
         }
         let keeps_background = self.background_is_clean();
+        let found = std::mem::take(&mut output.guides);
+        let layers = if found.is_empty() { layers } else { &found };
         let guides = Guides { keeps_background, ..guides(layers) };
         let clean = || denoiser.denoise(&output.color, &guides, quality);
         let clean = output.stats.time(Stage::Denoise, clean);

@@ -184,7 +184,8 @@ pub struct EvenSurface {
 impl SeenPixels {
     /// Samples the pixels of the view's window; pixels are empty once cancelled.
     pub fn new(world: &World, view: &View, settings: &FeatureSettings, control: &Control) -> SeenPixels {
-        let look = |first, last| FeatureSampler { world, view, settings }.pixels(first, last);
+        let look =
+            |first, last| FeatureSampler { world, view, settings }.pixels(settings.rule(), first, last);
         SeenPixels { pixels: by_tiles(view, control, look) }
     }
 

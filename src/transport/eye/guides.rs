@@ -5,16 +5,24 @@
 //!
 //! Errors: values have 16 bits, hence 1e-5 of an albedo and 3e-5 of a normal.
 
-use super::seen::{FeatureSampler, FeatureSettings, PixelFeatures};
+use super::seen::{FIRST_SAMPLES, FeatureSampler, FeatureSettings, MoreSamples, PixelFeatures};
+use super::tiles::by_tiles;
 use crate::irradiance::PathEnds;
-use crate::paths::{PathPolicy, Position};
+use crate::paths::{Estimand, PathPolicy, Position};
 use base::film::{Image, Layer, Window};
 use base::math::Rgb;
+use base::progress::Control;
 use glam::Vec3;
 use rayon::prelude::*;
 use world::World;
 use world::light::Learned;
 use world::view::View;
+
+/// Rule by which pixels at edges get more eye rays than others. The means of pixels without edges need fewer.
+const RULE: MoreSamples = MoreSamples { samples: 16, max_difference: 0.1 };
+
+/// Changes the seed for the eye rays of a survey.
+const SURVEY: u32 = 0x9e6c_63d1;
 
 /// Maximum code of a packed value.
 const MAX_CODE: f32 = u16::MAX as f32;
@@ -51,11 +59,39 @@ pub struct PackedGuide {
     normal: [u16; 3],
 }
 
+/// Pixel of a denoised image, as eye rays of its own see it before its samples are taken.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct SurveyedPixel {
+    /// Guide of the denoiser.
+    pub guide: PackedGuide,
+    /// True if the pixel and its neighbours see nearly equal surfaces.
+    pub is_even: bool,
+}
+
+/// Surveys the pixels of the view's window, by eye rays that depend on `seed` and are those of no sample. Pixels are
+/// empty once cancelled.
+pub fn survey(world: &World, view: &View, seed: u32, control: &Control) -> Image<SurveyedPixel> {
+    let settings = FeatureSettings { estimand: Estimand::Pixels, spp: FIRST_SAMPLES, seed: seed ^ SURVEY };
+    let sampler = FeatureSampler { world, view, settings: &settings };
+    let surveyed = |pixel: PixelFeatures| SurveyedPixel {
+        guide: Guide { albedo: pixel.albedo, normal: pixel.normal }.kept(pixel.samples),
+        is_even: pixel.is_even,
+    };
+    by_tiles(view, control, |first, last| {
+        sampler.pixels(RULE, first, last).into_iter().map(surveyed).collect()
+    })
+}
+
 /// Guides of a window.
 #[derive(Clone, Debug)]
 pub struct PackedGuides(pub Vec<PackedGuide>);
 
 impl PackedGuides {
+    /// Returns the guides of surveyed pixels.
+    pub fn of_survey(survey: &Image<SurveyedPixel>) -> PackedGuides {
+        PackedGuides(survey.pixels.iter().map(|pixel| pixel.guide).collect())
+    }
+
     /// Returns layers of albedo and normals, named after these features.
     pub fn layers(&self, window: &Window) -> Vec<Layer> {
         let image = |value: &(dyn Fn(&PackedGuide) -> Vec3 + Sync)| Image {
@@ -151,8 +187,6 @@ impl FirstSurfaces {
 pub struct FullPaths<'a> {
     /// Learned light that guides light samples.
     pub learned: Option<&'a Learned>,
-    /// First surfaces, if guides are requested.
-    pub first_surfaces: Option<FirstSurfaces>,
     /// Light by which paths end behind wide lobes; `None` if they go on.
     pub path_ends: Option<&'a PathEnds>,
 }
@@ -167,25 +201,12 @@ impl PathPolicy<'_> for FullPaths<'_> {
     fn path_ends(&self) -> Option<&PathEnds> {
         self.path_ends
     }
-
-    fn sees(&self) -> bool {
-        self.first_surfaces.is_some()
-    }
-
-    #[inline]
-    fn see(&mut self, path: u32, albedo: Option<Rgb>, normal: Vec3) {
-        if let Some(first) = &mut self.first_surfaces {
-            first.see(path, albedo, normal);
-        }
-    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::eye::{DirectSampling, EyePass, EyeSettings, LightSources};
-    use crate::paths::Estimand;
-    use base::progress::Control;
     use world::testkit::*;
 
     #[test]

@@ -41,7 +41,7 @@ pub use direct_light::merged_points;
 pub use direct_sampling::{DirectSampling, LightSources};
 pub use extra::ExtraSamples;
 pub use features::{Averaging, DEPTH, EvenSurface, Feature, Features, NO_DEPTH, SeenPixels, UnknownFeature};
-pub use guides::{FirstSurfaces, FullPaths, Guide, PackedGuide, PackedGuides};
+pub use guides::{FullPaths, PackedGuides, SurveyedPixel, survey};
 pub use pass::EyePass;
 pub use pilot::{ByPhotons, EyePilot};
 pub use points::{PointGeometry, ShadingPoints, VisibilitySamples, edge_class};

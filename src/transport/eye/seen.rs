@@ -9,6 +9,7 @@ use base::math::{Cone, LANES, Rgb, first_lanes};
 use base::sampling::Sampler;
 use embree::{Hits16, Ray, Rays16};
 use glam::{DVec3, Vec2, Vec3};
+use world::material::Bsdf;
 use world::view::View;
 use world::{Surface, World, beyond};
 
@@ -16,9 +17,18 @@ use world::{Surface, World, beyond};
 const MAX_SAMPLES: u32 = 32;
 
 /// Number of samples of pixels in which the samples are nearly equal.
-const FIRST_SAMPLES: u32 = 4;
+pub(super) const FIRST_SAMPLES: u32 = 4;
 
-/// Maximum difference of albedo, and of a normal's coordinates, between samples that count as equal.
+/// Rule by which pixels get more samples than the first few.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct MoreSamples {
+    /// Number of samples of pixels that get more.
+    pub samples: u32,
+    /// Maximum difference of albedo, and of a normal's coordinates, between samples that count as equal.
+    pub max_difference: f32,
+}
+
+/// Maximum difference between samples that count as equal, for layers.
 const MAX_SAMPLE_DIFFERENCE: f32 = 0.02;
 
 /// Minimum difference of albedo, or of a normal's coordinates, between pixels on both sides of an edge.
@@ -39,9 +49,9 @@ pub struct FeatureSettings {
 }
 
 impl FeatureSettings {
-    /// Returns the maximum number of samples per pixel.
-    fn samples(&self) -> u32 {
-        self.spp.clamp(1, MAX_SAMPLES)
+    /// Returns the rule for layers.
+    pub(super) fn rule(&self) -> MoreSamples {
+        MoreSamples { samples: self.spp.clamp(1, MAX_SAMPLES), max_difference: MAX_SAMPLE_DIFFERENCE }
     }
 }
 
@@ -68,8 +78,8 @@ pub(super) struct PixelFeatures {
     pub reflects: bool,
     /// True if the samples, and those of the neighbours, are nearly equal.
     pub is_even: bool,
-    /// True if the samples differ by more than `MAX_SAMPLE_DIFFERENCE`.
-    varies: bool,
+    /// Maximum difference of a sample from those before it; infinite between meshes.
+    difference: f32,
 }
 
 /// Features that are not averaged, of the nearest sample.
@@ -96,7 +106,8 @@ pub(super) struct FeatureSampler<'a> {
 impl FeatureSampler<'_> {
     /// Returns the features of the film pixels from `first` to `last`. All samples are taken if the first few differ,
     /// in the pixel or between neighbours.
-    pub fn pixels(&self, first: [u32; 2], last: [u32; 2]) -> Vec<PixelFeatures> {
+    pub fn pixels(&self, rule: MoreSamples, first: [u32; 2], last: [u32; 2]) -> Vec<PixelFeatures> {
+        let MoreSamples { samples, max_difference } = rule;
         // Neighbours outside the window are sampled too, so that a crop has the features of the full image.
         let film = self.view.window.film;
         let (left, top) = (first[0].saturating_sub(1), first[1].saturating_sub(1));
@@ -104,7 +115,6 @@ impl FeatureSampler<'_> {
         let all: Vec<[u32; 2]> = (top..=bottom).flat_map(|y| (left..=right).map(move |x| [x, y])).collect();
         let at = |[x, y]: [u32; 2]| ((y - top) * (right - left + 1) + x - left) as usize;
         let mut pixels = vec![PixelFeatures::default(); all.len()];
-        let samples = self.settings.samples();
         let few = samples.min(FIRST_SAMPLES);
         let begun = (0..pixels.len()).flat_map(|pixel| (0..few).map(move |sample| (pixel, sample)));
         self.add(&all, &mut pixels, begun);
@@ -116,7 +126,7 @@ impl FeatureSampler<'_> {
             near(y, top, bottom).any(|y| {
                 near(x, left, right).any(|x| {
                     let other = &pixels[at([x, y])];
-                    other.varies || pixel.is_beside_edge(other)
+                    other.difference > max_difference || pixel.is_beside_edge(other)
                 })
             })
         };
@@ -144,7 +154,7 @@ impl FeatureSampler<'_> {
                 continue;
             }
             let vertex = ChainVertex { surface, bsdf, out, throughput: Rgb::ONE, depth: 1, distance };
-            seen.meet(world, EdgeEnd::Surface(vertex));
+            seen.meet(world, vertex, &bsdf);
             break;
         }
         let mut pixel = PixelFeatures::default();
@@ -203,7 +213,10 @@ impl PixelFeatures {
         let towards =
             |vertex: &ChainVertex, normal: Vec3| if normal.dot(vertex.out) < 0.0 { -normal } else { normal };
         let normal = vertex.map_or(Vec3::ZERO, |vertex| towards(&vertex, vertex.surface.frame.normal));
-        self.varies |= self.samples > 0 && self.differs(seen.albedo, normal, vertex.map(|v| v.surface.mesh));
+        if self.samples > 0 {
+            let mesh = vertex.map(|vertex| vertex.surface.mesh);
+            self.difference = self.difference.max(self.difference_of(seen.albedo, normal, mesh));
+        }
         self.samples += 1;
         self.reflects |= seen.reflects;
         self.albedo += seen.albedo;
@@ -229,13 +242,15 @@ impl PixelFeatures {
         mesh(self) != mesh(other) || differ(self.albedo, other.albedo) || differ(self.normal, other.normal)
     }
 
-    /// Returns true if another sample differs from the mean so far in albedo or normal, or lies on another mesh than
-    /// the nearest sample.
-    fn differs(&self, albedo: Rgb, normal: Vec3, mesh: Option<u32>) -> bool {
+    /// Returns the difference of another sample from the mean so far, in albedo and normal. It is infinite if the
+    /// sample lies on another mesh than the nearest one.
+    fn difference_of(&self, albedo: Rgb, normal: Vec3, mesh: Option<u32>) -> f32 {
         let n = self.samples as f32;
-        mesh != self.nearest.map(|nearest| nearest.mesh)
-            || (albedo * n - self.albedo).abs().max_element() > MAX_SAMPLE_DIFFERENCE * n
-            || (normal * n - self.normal).abs().max_element() > MAX_SAMPLE_DIFFERENCE * n
+        let off = |value: Vec3, sum: Vec3| (value - sum / n).abs().max_element();
+        match mesh == self.nearest.map(|nearest| nearest.mesh) {
+            true => off(albedo, self.albedo).max(off(normal, self.normal)),
+            false => f32::INFINITY,
+        }
     }
 }
 
@@ -267,38 +282,39 @@ impl<'w> SeenSurfaces<'w> {
         let mut seen = SeenSurfaces::default();
         let bsdf = world.bsdf(&surface);
         if bsdf.has_delta() {
-            let visit = |met| seen.meet(world, met);
+            let visit = |met| match met {
+                EdgeEnd::Nothing { throughput, on_eye_ray } => seen.miss(throughput, on_eye_ray),
+                EdgeEnd::Surface(vertex) => seen.meet(world, vertex, &world.bsdf(&vertex.surface)),
+            };
             let chains = ChainTracer { world, cone, max_depth: MAX_EDGES, follow: Follow::Delta };
             chains.trace(*ray, sampler, &mut EyeCounts::default(), visit);
         } else {
             let (out, throughput, distance) = (-ray.direction, Rgb::ONE, surface.t);
             let vertex = ChainVertex { surface, bsdf, out, throughput, depth: 1, distance };
-            seen.meet(world, EdgeEnd::Surface(vertex));
+            seen.meet(world, vertex, &bsdf);
         }
         seen
     }
 
-    fn meet(&mut self, world: &'w World, met: EdgeEnd<'w>) {
-        match met {
-            EdgeEnd::Nothing { throughput, on_eye_ray } => {
-                if on_eye_ray {
-                    self.passed = (self.passed + throughput.max_element()).min(1.0);
-                }
-                if throughput.max_element() > self.share {
-                    (self.share, self.main) = (throughput.max_element(), None);
-                }
-            }
-            EdgeEnd::Surface(vertex) => {
-                self.first = self.first.or(Some(vertex));
-                let whole = world.bsdf(&vertex.surface);
-                self.reflects |= whole.has_delta() || !whole.sharp_lobes().is_empty();
-                let albedo = world.guide_albedo(&vertex.surface, &whole, vertex.out);
-                self.albedo += vertex.throughput * albedo;
-                let passes_on = whole.has_delta() && albedo == Rgb::ZERO;
-                if !passes_on && vertex.throughput.max_element() > self.share {
-                    (self.share, self.main) = (vertex.throughput.max_element(), Some(vertex));
-                }
-            }
+    /// Adds an edge that hits nothing.
+    fn miss(&mut self, throughput: Rgb, on_eye_ray: bool) {
+        if on_eye_ray {
+            self.passed = (self.passed + throughput.max_element()).min(1.0);
+        }
+        if throughput.max_element() > self.share {
+            (self.share, self.main) = (throughput.max_element(), None);
+        }
+    }
+
+    /// Adds a surface with its BSDF, of which the vertex may have a part.
+    fn meet(&mut self, world: &World, vertex: ChainVertex<'w>, whole: &Bsdf) {
+        self.first = self.first.or(Some(vertex));
+        self.reflects |= whole.has_delta() || !whole.sharp_lobes().is_empty();
+        let albedo = world.guide_albedo(&vertex.surface, whole, vertex.out);
+        self.albedo += vertex.throughput * albedo;
+        let passes_on = whole.has_delta() && albedo == Rgb::ZERO;
+        if !passes_on && vertex.throughput.max_element() > self.share {
+            (self.share, self.main) = (vertex.throughput.max_element(), Some(vertex));
         }
     }
 }
@@ -328,7 +344,7 @@ mod tests {
         let world = triangle();
         let settings = FeatureSettings { estimand: Estimand::Pixels, spp: SPP, seed: 3 };
         let looking = FeatureSampler { world: &world, view: &world.view, settings: &settings };
-        let pixels = looking.pixels([0, 0], [39, 39]);
+        let pixels = looking.pixels(settings.rule(), [0, 0], [39, 39]);
         let (mut crossed, mut flat) = (0, 0);
         for (i, pixel) in pixels.iter().enumerate() {
             let at = [i as u32 % 40, i as u32 / 40];
@@ -346,7 +362,7 @@ mod tests {
         }
         assert!(crossed > 100 && flat > 1000 && crossed + flat == 1600, "{crossed} {flat}");
         // A part of the film has the same.
-        let part = looking.pixels([7, 9], [12, 30]);
+        let part = looking.pixels(settings.rule(), [7, 9], [12, 30]);
         for (i, pixel) in part.iter().enumerate() {
             let whole = &pixels[(9 + i / 6) * 40 + 7 + i % 6];
             assert_eq!((pixel.samples, pixel.albedo), (whole.samples, whole.albedo));

@@ -7,10 +7,10 @@ use rayon::prelude::*;
 use world::view::View;
 
 /// Pixels along the edge of the square that one task examines.
-const TILE: u32 = 16;
+const TILE: u32 = 32;
 
 /// Maximum number of squares that are examined before their pixels are joined.
-const TILES: usize = 1024;
+const TILES: usize = 256;
 
 /// Looks through the pixels of a view's window; `look` returns those from a first to a last film pixel, by rows.
 pub(super) fn by_tiles<T: Clone + Default + Send>(

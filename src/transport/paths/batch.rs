@@ -12,7 +12,7 @@ use super::groups::{FirstHits16, collect};
 use super::packet::{Packet, PathStage};
 use super::policy::PathPolicy;
 use super::vertices::{GroupLanes, Seen16, Vertices};
-use base::math::{Cone, LANES, Rgb, Vec3x16, first_lanes, lanes_in};
+use base::math::{Cone, LANES, Rgb, U32x16, Vec3x16, first_lanes, lanes_in};
 use base::sampling::Samplers16;
 use embree::{Hits16, Rays16};
 use std::mem;
@@ -25,8 +25,8 @@ pub struct Batch {
     packets: Vec<Packet>,
     /// Number of paths in the packets. Behind the first edge they fill all lanes from the first on.
     count: usize,
-    /// Lanes of each packet that hold paths at their first edge.
-    first: Vec<u16>,
+    /// Lanes of each packet that hold paths at their first edge, with numbers that tell their pixels apart.
+    first: Vec<(u16, U32x16)>,
     /// Segments to lights that wait for a full packet, and their number.
     shadows: (ShadowPacket, usize),
     /// Edges that can find only the environment, until they fill a packet, and their number.
@@ -35,10 +35,11 @@ pub struct Batch {
 }
 
 impl Batch {
-    /// Adds up to sixteen paths. Their results follow those of the call before.
-    pub fn push(&mut self, rays: Rays16, samplers: Samplers16, cone: Cone, count: usize) {
+    /// Adds up to sixteen paths. Their results follow those of the call before. Numbers in `pixels` tell the paths'
+    /// pixels apart.
+    pub fn push(&mut self, rays: Rays16, samplers: Samplers16, pixels: U32x16, cone: Cone, count: usize) {
         self.packets.push(Packet::new(rays, samplers, cone, self.count as u32));
-        self.first.push(first_lanes(count));
+        self.first.push((first_lanes(count), pixels));
         self.count += count;
         self.radiance.resize(self.count, Rgb::ZERO);
     }
@@ -86,7 +87,8 @@ impl Batch {
         let packets = if depth == 1 { self.packets.len() } else { self.count.div_ceil(LANES) };
         for index in 0..packets {
             let mut packet = self.packets[index].clone();
-            let valid = if depth == 1 { self.first[index] } else { first_lanes(self.count - index * LANES) };
+            let valid =
+                if depth == 1 { self.first[index].0 } else { first_lanes(self.count - index * LANES) };
             let found = self.hit(world, &packet, valid, depth, policy, &mut hits);
             if found == 0 {
                 continue;
@@ -114,7 +116,8 @@ impl Batch {
         let (mut single, mut groups) = (SingleHits::default(), Vec::with_capacity(LANES));
         for index in 0..self.packets.len() {
             let mut packet = self.packets[index].clone();
-            let found = self.hit(world, &packet, self.first[index], 1, policy, &mut hits);
+            let (valid, pixel) = self.first[index];
+            let found = self.hit(world, &packet, valid, 1, policy, &mut hits);
             if found == 0 {
                 continue;
             }
@@ -134,8 +137,8 @@ impl Batch {
                 continue;
             }
             let directions = packet.rays.directions();
-            let (surfaces, pixel) = (&surfaces, &packet.samplers.seed);
-            let first = FirstHits16 { surfaces, directions: &directions, pixel, spacing };
+            let surfaces = &surfaces;
+            let first = FirstHits16 { surfaces, directions: &directions, pixel: &pixel, spacing };
             collect(world, &first, grouped, &mut groups);
             let edge = Edge { depth: 1, max_depth, kept: &mut kept };
             let lanes = GroupLanes::new(&groups);

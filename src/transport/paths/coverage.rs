@@ -49,24 +49,28 @@ pub struct Coverage<'a> {
     strata: Vec<u32>,
     /// Numbers of the strata, with their numbers of rays.
     counts: Vec<(u32, u32)>,
+    /// Number of eye rays traced.
+    pub covering: u64,
 }
 
 impl<'a> Coverage<'a> {
     /// Creates the finder for the paths of these numbers in each pixel.
     pub fn new(world: &'a World, view: &'a View, seed: u32, numbers: Range<u32>) -> Coverage<'a> {
         let (paths, first) = (numbers.len() as u32, numbers.start.saturating_mul(RAYS_PER_PATH));
-        Coverage { world, view, seed, paths, first, strata: Vec::new(), counts: Vec::new() }
+        Coverage { world, view, seed, paths, first, strata: Vec::new(), counts: Vec::new(), covering: 0 }
     }
 
-    /// Returns the number of eye rays per pixel; 0 for a single path, which has no choice.
+    /// Returns the number of eye rays in a pixel that is divided; 0 for a single path, which has no choice.
     pub fn rays(&self) -> u32 {
         if self.paths > 1 { (RAYS_PER_PATH * self.paths).next_multiple_of(LANES as u32) } else { 0 }
     }
 
-    /// Appends the positions of the paths of a film pixel to `found`.
-    pub fn add(&mut self, pixel: [u32; 2], found: &mut Vec<Position>) {
+    /// Appends the positions of the paths of a film pixel to `found`. An even pixel is not divided.
+    pub fn add(&mut self, pixel: [u32; 2], is_even: bool, found: &mut Vec<Position>) {
         self.strata.clear();
-        for first in (0..self.rays()).step_by(LANES) {
+        let rays = if is_even { 0 } else { self.rays() };
+        self.covering += u64::from(rays);
+        for first in (0..rays).step_by(LANES) {
             self.trace(pixel, self.first.saturating_add(first));
         }
         self.counts.clear();
@@ -188,7 +192,7 @@ mod tests {
         let world = room_with_ball(None);
         let positions = |numbers: Range<u32>, pixel| {
             let mut found = Vec::new();
-            Coverage::new(&world, &world.view, 1, numbers).add(pixel, &mut found);
+            Coverage::new(&world, &world.view, 1, numbers).add(pixel, false, &mut found);
             found
         };
         for (numbers, first) in [(0..1, 0), (5..6, 20), (0..4, 0), (16..32, 64)] {

@@ -13,6 +13,7 @@ mod groups;
 mod guided;
 mod packet;
 mod photon_ends;
+mod pixel_order;
 mod policy;
 mod start;
 #[cfg(test)]

@@ -2,6 +2,7 @@
 
 use super::batch::Batch;
 use super::estimand::{Estimand, pixel_seed};
+use super::pixel_order::sequence;
 use base::math::LANES;
 use base::sampling::Samplers16;
 use embree::Rays16;
@@ -61,10 +62,14 @@ pub fn start(
             numbers[i] = estimand.numbers(seed, position).into();
         }
         let mut jitter = samplers.point(1);
+        let pixel_seeds = samplers.seed;
         samplers.index = starts.map(|start| start.sample);
-        if estimand != Estimand::Pixels {
-            for (i, path) in starts.iter().enumerate() {
-                jitter.set(i, estimand.eye_sampler(path.pixel, path.seed, path.sample).1);
+        for (i, PathStart { pixel, sample, seed, .. }) in starts.into_iter().enumerate() {
+            match estimand {
+                Estimand::Pixels => {
+                    [samplers.seed[i], samplers.index[i]] = sequence(pixel, seed, sample, samples);
+                }
+                _ => jitter.set(i, estimand.eye_sampler(pixel, seed, sample).1),
             }
         }
         let mut rays = Rays16::default();
@@ -74,6 +79,6 @@ pub fn start(
         if world.scene.hides_emitters {
             (0..count).for_each(|i| rays.set(i, &world.behind_hidden(rays.get(i))));
         }
-        batch.push(rays, samplers, cone, count);
+        batch.push(rays, samplers, pixel_seeds, cone, count);
     }
 }

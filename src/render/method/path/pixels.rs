@@ -52,7 +52,7 @@ pub fn pixel_means(
     counts: &mut RayCounts,
 ) -> (Vec<DVec3>, u64) {
     let PixelSampling { estimand, seed, max_depth, learned } = sampling;
-    let mut paths = FullPaths { learned, ..FullPaths::default() };
+    let mut paths = FullPaths { learned, path_ends: None };
     let mut sums = vec![DVec3::ZERO; wanted.len()];
     let mut nonfinite = 0;
     let mut batch = Batch::default();

@@ -17,7 +17,7 @@ use base::setting::PHOTON_ENDS;
 use base::stats::Stage;
 use rayon::prelude::*;
 use std::sync::Arc;
-use transport::eye::{PackedGuide, PackedGuides};
+use transport::eye::{PackedGuides, survey};
 use transport::irradiance::PathEnds;
 use transport::paths::{Batch, Estimand};
 use world::World;
@@ -32,8 +32,6 @@ method_settings! {
         denoised: bool = false;
         /// Quantity that a pixel estimates.
         estimand: Estimand = Estimand::Pixels;
-        /// True if renders return a denoiser's guides.
-        guides: bool = false;
     }
 }
 
@@ -54,11 +52,6 @@ impl Renderer for Settings {
         self.estimand
     }
 
-    /// Makes renders return a denoiser's guides, if pixels are means over their squares.
-    fn find_guides(&mut self) {
-        self.guides = self.estimand == Estimand::Pixels;
-    }
-
     fn expect_denoising(&mut self) {
         self.denoised = true;
     }
@@ -68,7 +61,7 @@ impl Renderer for Settings {
     }
 
     fn finds_guides(&self) -> bool {
-        self.guides
+        self.denoised && self.estimand == Estimand::Pixels
     }
 
     fn sampled(&self) -> Sampled {
@@ -138,10 +131,9 @@ impl Settings {
         let mut tiles: Vec<PathTile> = (0..view.window.tile_count(TILE)).map(tile).collect();
         let Settings { estimand, spp, seed, .. } = *self;
         let max_depth = world.scene.path_limit(self.max_depth);
-        // Guides of earlier samples are lost, and paths of one edge meet no surface.
-        let guides = self.guides && max_depth > 1 && tiles.iter().all(|tile| tile.samples == 0);
         let ends = self.path_ends(world, lights, view, control, &mut tally);
-        let chooses_positions = self.denoised && estimand == Estimand::Pixels;
+        let survey =
+            self.finds_guides().then(|| tally.time(Stage::Render, || survey(world, view, seed, control)));
         let (learned, path_ends) = (known.light.as_ref(), ends.as_deref());
         let inputs = TileInputs {
             world,
@@ -150,8 +142,7 @@ impl Settings {
             spp,
             seed,
             max_depth,
-            guides,
-            chooses_positions,
+            survey: survey.as_ref(),
             learned,
             path_ends,
         };
@@ -163,14 +154,15 @@ impl Settings {
             tally.count("Rays/positions", tile.covering);
             tally.shadow_rays("Rays/shadow", tile.counts.shadow_rays);
         }
-        let TileImages { color, squares, samples, guides } = TileImages::new(&tiles, view, guides);
+        let TileImages { color, squares, samples } = TileImages::new(&tiles, view);
         let complete = tiles.iter().all(|tile| tile.samples == spp);
         let nonfinite = partial.map_or(0, |partial| partial.nonfinite)
             + tiles.iter().map(|tile| tile.nonfinite).sum::<u64>();
         // A single sample has no variance.
         let variance = (spp > 1).then(|| variance(&squares, &samples));
         let resumable = PartialImage::layers(squares, samples);
-        let guides = guides.map_or_else(Vec::new, |guides| guides.layers(&view.window));
+        let guides =
+            survey.map_or_else(Vec::new, |survey| PackedGuides::of_survey(&survey).layers(&view.window));
         Output { variance, resumable, guides, complete, nonfinite, ..Output::new(color, tally) }
     }
 }
@@ -210,16 +202,14 @@ struct TileImages {
     color: Image,
     squares: Image,
     samples: Image<u32>,
-    guides: Option<PackedGuides>,
 }
 
 impl TileImages {
-    fn new(tiles: &[PathTile], view: &View, has_guides: bool) -> TileImages {
+    fn new(tiles: &[PathTile], view: &View) -> TileImages {
         let window = &view.window;
         let mut color = Image::new(window.width, window.height);
         let mut squares = Image::new(window.width, window.height);
         let mut samples = squares.map(|_| 0);
-        let mut guides = vec![PackedGuide::default(); if has_guides { color.pixels.len() } else { 0 }];
         for (i, tile) in tiles.iter().enumerate() {
             let indices = || window.tile(i, TILE).map(|[x, y]| (y * window.width + x) as usize);
             for (pixel, at) in tile.pixels.iter().zip(indices()) {
@@ -228,11 +218,8 @@ impl TileImages {
                 squares.pixels[at] = pixel.squares.min(Rgb::splat(f32::MAX));
                 samples.pixels[at] = tile.samples;
             }
-            for (guide, at) in tile.guides.iter().zip(indices()) {
-                guides[at] = guide.kept(tile.samples);
-            }
         }
-        TileImages { color, squares, samples, guides: has_guides.then_some(PackedGuides(guides)) }
+        TileImages { color, squares, samples }
     }
 }
 
@@ -248,39 +235,42 @@ fn variance(squares: &Image, samples: &Image<u32>) -> Image {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use base::film::Layer;
     use glam::Vec3;
     use transport::eye::{Feature, FeatureSettings, Features, SeenPixels};
     use world::testkit::*;
 
     #[test]
-    fn guides_are_the_features_of_all_paths_and_do_not_change_the_image() {
+    fn guides_are_as_good_as_many_samples_however_few_paths_there_are() {
         let world = room_with_ball(Some(mirror()));
         let (view, control) = (&world.view, &Control::new());
-        let plain = Settings { spp: 18, seed: 3, ..Settings::default() };
-        let mut guided = plain;
-        guided.find_guides();
         let render = |settings: &Settings| settings.render(&world, &LightStore::default(), view, control);
-        let (expected, found) = (render(&plain), render(&guided));
-        assert_eq!(found.color, expected.color);
-        assert!(expected.guides.is_empty());
-        let settings = FeatureSettings { estimand: plain.estimand, spp: plain.spp, seed: plain.seed };
-        let wanted = Features::default().with(Feature::Albedo).with(Feature::Normal);
-        let features = SeenPixels::new(&world, view, &settings, control).layers(&world, wanted);
-        for (feature, guide) in features.iter().zip(&found.guides) {
-            assert_eq!(feature.name, guide.name);
-            let [feature, guide] = [feature, guide].map(|layer| &layer.triples().expect("a vector").pixels);
-            let off = |(a, b): (&Rgb, &Rgb)| (*a - *b).abs().max_element();
-            let error = feature.iter().zip(guide).map(off).fold(0.0, f32::max);
-            assert!(error < 1e-4, "{error}");
-        }
-        assert_eq!(found.guides.len(), 2);
-        // Earlier samples have no guides.
-        let (color, squares, samples) =
-            (expected.color.clone(), expected.color.clone(), expected.color.map(|_| 16));
+        let plain = Settings { spp: 1, seed: 3, ..Settings::default() };
+        assert!(render(&plain).guides.is_empty());
+        let denoised = Settings { denoised: true, ..plain };
+        let found = render(&denoised);
+        let features = |spp| {
+            let settings = FeatureSettings { estimand: Estimand::Pixels, spp, seed: 7 };
+            let wanted = Features::default().with(Feature::Albedo).with(Feature::Normal);
+            SeenPixels::new(&world, view, &settings, control).layers(&world, wanted)
+        };
+        let error = |guides: &[Layer], truth: &[Layer]| -> f32 {
+            let pairs = guides.iter().zip(truth).flat_map(|(guide, truth)| {
+                assert_eq!(guide.name, truth.name);
+                let pixels = |layer: &Layer| layer.triples().expect("a vector").pixels.clone();
+                pixels(guide).into_iter().zip(pixels(truth))
+            });
+            pairs.map(|(a, b)| (a - b).length_squared()).sum()
+        };
+        let truth = features(32);
+        let [own, of_one] = [&found.guides, &features(1)].map(|guides| error(guides, &truth));
+        assert!(own < 0.1 * of_one, "{own} {of_one}");
+        // An image that is resumed has them too.
+        let more = Settings { spp: 32, ..denoised };
+        let (color, squares, samples) = (found.color.clone(), found.color.clone(), found.color.map(|_| 16));
         let partial = PartialImage { color, squares, samples, nonfinite: 0, seconds: 0.0 };
-        let rest = guided.render_rest(&world, &LightStore::default(), &partial, view, control);
-        assert!(rest.complete && rest.guides.is_empty());
-        assert!(render(&Settings { max_depth: Some(1), ..guided }).guides.is_empty());
+        let rest = more.render_rest(&world, &LightStore::default(), &partial, view, control);
+        assert!(rest.complete && error(&rest.guides, &found.guides) == 0.0);
     }
 
     /// Returns the mean image over seeds, and the variance of a pixel.

@@ -2,7 +2,7 @@
 
 use base::film::{ExrFile, Image, Layer, SAMPLES};
 use base::math::Rgb;
-use transport::eye::{FeatureSettings, FirstSurfaces, FullPaths, Guide};
+use transport::eye::{FullPaths, SurveyedPixel};
 use transport::irradiance::PathEnds;
 use transport::paths::{Batch, Coverage, Estimand, PathStart, Position, RayCounts, start};
 use world::World;
@@ -41,10 +41,8 @@ pub struct TileInputs<'a> {
     pub seed: u32,
     /// Maximum path length in edges.
     pub max_depth: u32,
-    /// True if a denoiser's guides are wanted.
-    pub guides: bool,
-    /// True if positions of paths are chosen by what they cover.
-    pub chooses_positions: bool,
+    /// Survey of the window, by which positions of paths are chosen; `None` if they are not.
+    pub survey: Option<&'a Image<SurveyedPixel>>,
     /// Learned light that guides light samples.
     pub learned: Option<&'a Learned>,
     /// Light by which paths end; `None` if they go on.
@@ -56,8 +54,6 @@ pub struct TileInputs<'a> {
 pub struct PathTile {
     /// Pixels of the tile, row by row; empty before the first pass.
     pub pixels: Vec<RunningMean>,
-    /// Guides by pixel, if they are wanted.
-    pub guides: Vec<Guide>,
     /// Samples per pixel.
     pub samples: u32,
     /// Paths traced in this run.
@@ -90,8 +86,7 @@ impl PathTile {
 
     /// Takes all samples up to `end` of every pixel of the tile of this index.
     pub fn render(&mut self, inputs: &TileInputs, index: usize, end: u32, batch: &mut Batch) {
-        let TileInputs { world, view, estimand, spp, seed, max_depth, guides, learned, path_ends, .. } =
-            *inputs;
+        let TileInputs { world, view, estimand, spp, seed, max_depth, learned, path_ends, .. } = *inputs;
         let begin = self.samples;
         if begin >= end {
             return;
@@ -102,12 +97,8 @@ impl PathTile {
         if self.pixels.is_empty() {
             self.pixels = vec![RunningMean::default(); film_pixels.len()];
         }
-        let positions = self.positions(inputs, &film_pixels, end);
-        let mut paths = FullPaths { learned, path_ends, ..FullPaths::default() };
-        if guides {
-            self.guides.resize(film_pixels.len(), Guide::default());
-            paths.first_surfaces = Some(FirstSurfaces::default());
-        }
+        let positions = inputs.survey.map(|survey| self.positions(inputs, survey, index, end));
+        let mut paths = FullPaths { learned, path_ends };
         for first in (begin..end).step_by(BATCH as usize) {
             let samples = first..(first + BATCH).min(end);
             let position = |pixel: usize, sample: u32| match &positions {
@@ -123,15 +114,7 @@ impl PathTile {
                 seed,
             });
             start(batch, starts, world, view, estimand, spp);
-            if let Some(first) = &mut paths.first_surfaces {
-                first.begin(numbers().map(|(i, sample)| position(i, sample)), samples.len() as u32);
-            }
             let mut values = batch.trace(world, max_depth, &mut paths, &mut self.counts);
-            if let Some(first) = &mut paths.first_surfaces {
-                let features = FeatureSettings { estimand: Estimand::Pixels, spp, seed };
-                first.finish(world, view, features, &film_pixels);
-                self.guides.iter_mut().enumerate().for_each(|(i, guide)| guide.add(first.of(i)));
-            }
             for (i, pixel) in self.pixels.iter_mut().enumerate() {
                 for (sample, value) in samples.clone().zip(values.by_ref()) {
                     let value = value * position(i, sample).weight;
@@ -144,21 +127,24 @@ impl PathTile {
         self.samples = end;
     }
 
-    /// Chooses the positions of the paths of the pixels up to number `end`, if that is wanted.
+    /// Chooses the positions of the paths of the pixels up to number `end`.
     fn positions(
         &mut self,
         inputs: &TileInputs,
-        film_pixels: &[[u32; 2]],
+        survey: &Image<SurveyedPixel>,
+        index: usize,
         end: u32,
-    ) -> Option<Vec<Position>> {
-        inputs.chooses_positions.then(|| {
-            let numbers = self.samples..end;
-            let mut found = Vec::with_capacity(film_pixels.len() * numbers.len());
-            let mut coverage = Coverage::new(inputs.world, inputs.view, inputs.seed, numbers);
-            film_pixels.iter().for_each(|pixel| coverage.add(*pixel, &mut found));
-            self.covering += u64::from(coverage.rays()) * film_pixels.len() as u64;
-            found
-        })
+    ) -> Vec<Position> {
+        let TileInputs { world, view, seed, .. } = *inputs;
+        let numbers = self.samples..end;
+        let mut found = Vec::with_capacity(self.pixels.len() * numbers.len());
+        let mut coverage = Coverage::new(world, view, seed, numbers);
+        for [x, y] in view.window.tile(index, TILE) {
+            let is_even = survey.pixels[(y * survey.width + x) as usize].is_even;
+            coverage.add(view.window.film_pixel([x, y]), is_even, &mut found);
+        }
+        self.covering += coverage.covering;
+        found
     }
 }
 
