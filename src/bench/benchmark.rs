@@ -20,29 +20,18 @@ pub struct Benchmark {
 /// Kinds of benchmarks.
 pub enum Kind {
     /// Parts of the renderer.
-    Parts {
-        /// True if it measures on a scene.
-        needs_scene: bool,
-        /// Function that measures.
-        run: fn(&Context) -> Vec<Table>,
-    },
+    ///
+    /// The function measures them on a scene.
+    Parts(fn(&Context) -> Vec<Table>),
     /// Whole images.
     Study {
-        /// Scenes of the study.
-        scenes: Scenes,
+        /// Names of the default scenes. If there are none, the user must name scenes.
+        scenes: &'static [&'static str],
         /// Default width and height of the images.
         pixels: [u32; 2],
         /// Function that answers the study's questions about scene files.
         run: fn(&Study, &[PathBuf]) -> Result<Results, StudyError>,
     },
-}
-
-/// Scenes of a study.
-pub enum Scenes {
-    /// Files, with the names of the default scenes. If there are none, the user must name scenes.
-    Files(&'static [&'static str]),
-    /// Scenes that the study makes, with the default number of seeds per image.
-    Own(usize),
 }
 
 /// Settings of measurements.
@@ -64,8 +53,8 @@ impl Default for Settings {
 
 /// Inputs of a benchmark.
 pub struct Context<'a> {
-    /// The scene; present for benchmarks that need one.
-    pub session: Option<&'a Session>,
+    /// The scene.
+    pub session: &'a Session,
     /// Settings of measurements.
     pub settings: Settings,
     /// Facts about machine and program, found before anything is measured.
@@ -78,10 +67,9 @@ impl Benchmark {
     /// Returns the name of its operand in the usage.
     pub fn operand(&self) -> &'static str {
         match self.kind {
-            Kind::Parts { needs_scene: false, .. } | Kind::Study { scenes: Scenes::Own(_), .. } => "",
-            Kind::Parts { needs_scene: true, .. } => " SCENE",
-            Kind::Study { scenes: Scenes::Files([]), .. } => " SCENE...",
-            Kind::Study { scenes: Scenes::Files(_), .. } => " [SCENE...]",
+            Kind::Parts(_) => " SCENE",
+            Kind::Study { scenes: [], .. } => " SCENE...",
+            Kind::Study { .. } => " [SCENE...]",
         }
     }
 
@@ -89,14 +77,10 @@ impl Benchmark {
     pub fn results(&self, context: &Context, tables: &[Table]) -> Results {
         let mut facts = context.machine.clone();
         facts.push(("samples per case".to_owned(), context.settings.repeats.to_string()));
-        let scene = context.session.map(|session| &session.world.scene);
-        if let Some(scene) = scene {
-            facts.push(("triangles".to_owned(), scene.seen_triangle_count().to_string()));
-        }
-        let title = scene.map_or(self.name.to_owned(), |scene| format!("{} on {}", self.name, scene.name));
-        let mut results = Results::new(&title, facts, "");
-        (results.json["benchmark"], results.json["scene"]) =
-            (self.name.into(), scene.map(|scene| scene.name.clone()).into());
+        let scene = &context.session.world.scene;
+        facts.push(("triangles".to_owned(), scene.seen_triangle_count().to_string()));
+        let mut results = Results::new(&format!("{} on {}", self.name, scene.name), facts, "");
+        (results.json["benchmark"], results.json["scene"]) = (self.name.into(), (&*scene.name).into());
         results.add(tables);
         results.conclude();
         results

@@ -111,8 +111,8 @@ mod tests {
         let points = vec![Point { x: 1.0, y: 2.0, name: String::new() }];
         let series = Series { name: "s".to_owned(), colour: Colour::Red, line: Line::None, points };
         let panel = Panel { title: "a: FLIP".to_owned(), series: vec![series] };
-        document.plot("race, my scene", &Chart { axis: "s", panels: vec![panel], caption: Vec::new() });
-        document.plot("empty", &Chart { axis: "s", panels: Vec::new(), caption: Vec::new() });
+        document.plot("race, my scene", &Chart { panels: vec![panel], caption: Vec::new() });
+        document.plot("empty", &Chart { panels: Vec::new(), caption: Vec::new() });
         document.fold("All columns", |document| {
             let rows = vec![vec!["a|b".to_owned(), "1.00".to_owned()]];
             document.grid(&Grid::new(1, &["name", "x"], rows));

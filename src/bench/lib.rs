@@ -8,15 +8,10 @@
 #![forbid(unsafe_code)]
 
 mod benchmark;
-mod bounds;
-mod bsdf;
 mod budget;
 mod calibrate;
 mod document;
-mod extremes;
-mod front;
 mod growth;
-mod hsh;
 mod lit_scene;
 pub mod machine;
 mod measure;
@@ -30,23 +25,19 @@ mod table1;
 mod trade;
 mod trees;
 
-pub use benchmark::{Benchmark, Context, Kind, Scenes, Settings};
+pub use benchmark::{Benchmark, Context, Kind, Settings};
 pub use report::{Row, Spread, Table};
 pub use results::Results;
 
 /// All benchmarks.
-pub const REGISTRY: [Benchmark; 12] = [
+pub const REGISTRY: [Benchmark; 8] = [
     table1::BENCHMARK,
     trade::BENCHMARK,
     race::BENCHMARK,
-    extremes::BENCHMARK,
     calibrate::BENCHMARK,
     growth::BENCHMARK,
     shadow::BENCHMARK,
-    bounds::BENCHMARK,
     trees::BENCHMARK,
-    bsdf::BENCHMARK,
-    hsh::BENCHMARK,
     budget::BENCHMARK,
 ];
 

@@ -3,7 +3,6 @@
 use super::Context;
 use base::math::{Frame, LANES};
 use base::progress::Control;
-use base::sampling::hash;
 use render::session::Session;
 use std::ops::Range;
 use transport::eye::{EyePass, EyeSettings};
@@ -27,9 +26,9 @@ pub(super) struct LitScene<'w> {
 }
 
 impl<'w> LitScene<'w> {
-    /// Traces eye samples and virtual lights using the renderers' default settings. `None` without a scene.
-    pub fn new(context: &Context<'w>) -> Option<LitScene<'w>> {
-        let Session { world, cameras, .. } = context.session?;
+    /// Traces eye samples and virtual lights using the renderers' default settings.
+    pub fn new(context: &Context<'w>) -> LitScene<'w> {
+        let Session { world, cameras, .. } = context.session;
         let view = View::whole(cameras.still, cameras.resolution);
         let depth = world.scene.path_limit(None);
         (context.say)("tracing eye samples and virtual lights");
@@ -38,7 +37,7 @@ impl<'w> LitScene<'w> {
         let LightPass { sets, profiles, .. } =
             light_pass(world, &LightPassSettings::default(), &[], depth, &Control::new());
         let trees = LightTrees::build(&sets, profiles, world.diagonal, Family::default(), &Control::new());
-        Some(LitScene { world, samples, trees })
+        LitScene { world, samples, trees }
     }
 
     /// Returns the transfer of light to points.
@@ -68,11 +67,6 @@ impl<'w> LitScene<'w> {
         (0..STRETCHES).map(|s| first(s)..first(s) + length).collect()
     }
 
-    /// Returns stretches of eye samples that are neighbours in space.
-    pub fn stretches(&self) -> Vec<Vec<usize>> {
-        self.spread(self.samples.len()).into_iter().map(Iterator::collect).collect()
-    }
-
     /// Divides a stretch into groups of pixels that share a cut.
     pub fn groups(&self, stretch: &[usize]) -> Vec<Vec<usize>> {
         let limit = CoherenceLimit::of(self.world.diagonal);
@@ -95,20 +89,4 @@ pub(super) fn packet<'m>(receivers: impl IntoIterator<Item = Receiver<'m>>) -> R
     let mut packet = ReceiverPacket::new();
     packet.set(receivers);
     packet
-}
-
-/// A random number generator with a fixed seed.
-pub(super) struct Dice(pub u32);
-
-impl Dice {
-    /// Returns an integer from 0 to `n` - 1; 0 if `n` is 0.
-    pub fn below(&mut self, n: usize) -> usize {
-        self.0 += 1;
-        ((u64::from(hash(self.0, 0xbe7c)) * n as u64) >> 32) as usize
-    }
-
-    /// Returns a number from 0 up to 1.
-    pub fn unit(&mut self) -> f32 {
-        self.below(1 << 24) as f32 / (1 << 24) as f32
-    }
 }

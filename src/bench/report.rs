@@ -1,6 +1,7 @@
 //! Tables of measured parts.
 
 use crate::document::{Document, Grid};
+use crate::study::figure;
 use serde::Serialize;
 
 /// Cases measured against each other.
@@ -79,27 +80,17 @@ impl Table {
         let heads = self.labels.iter().chain(&fixed).chain(self.figures).copied().map(str::to_owned);
         let cells = |row: &Row| {
             let fixed = [
-                number(row.ratio.median),
-                format!("{} .. {}", number(row.ratio.low), number(row.ratio.high)),
-                number(row.rate.median),
+                figure(row.ratio.median),
+                format!("{} .. {}", figure(row.ratio.low), figure(row.ratio.high)),
+                figure(row.rate.median),
                 format!("{:.1} %", 100.0 * row.rate.relative()),
             ];
-            let figures = row.figures.iter().map(|f| f.map_or_else(String::new, number));
+            let figures = row.figures.iter().map(|f| f.map_or_else(String::new, figure));
             row.labels.iter().cloned().chain(fixed).chain(figures).collect()
         };
         let rows = self.rows.iter().map(cells).collect();
         document.grid(&Grid { names: self.labels.len(), heads: heads.collect(), rows });
         self.warnings.iter().for_each(|warning| document.text(&format!("*warning: {warning}*")));
-    }
-}
-
-/// Formats a number with at least three digits, without an exponent.
-fn number(value: f64) -> String {
-    match value.abs() {
-        v if v == 0.0 || v >= 1000.0 => format!("{value:.0}"),
-        v if v >= 100.0 => format!("{value:.1}"),
-        v if v >= 0.1 => format!("{value:.2}"),
-        _ => format!("{value:.4}"),
     }
 }
 

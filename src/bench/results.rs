@@ -52,7 +52,12 @@ impl Results {
             self.document.text(self.legend);
         }
         self.document.heading(2, "Machine and settings");
+        self.document.text(&self.conditions());
+    }
+
+    /// Returns the conditions as a sentence.
+    pub fn conditions(&self) -> String {
         let facts: Vec<String> = self.facts.iter().map(|(name, value)| format!("{name} {value}")).collect();
-        self.document.text(&facts.join(", "));
+        facts.join(", ")
     }
 }

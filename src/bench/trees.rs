@@ -12,7 +12,7 @@ use world::shadow::Engine;
 pub(super) const BENCHMARK: Benchmark = Benchmark {
     name: "trees",
     about: "Light trees built per second, and the cuts through them",
-    kind: Kind::Parts { needs_scene: true, run },
+    kind: Kind::Parts(run),
 };
 
 /// Numbers of indirect virtual lights.
@@ -21,7 +21,7 @@ const LIGHTS: [u32; 2] = [300_000, 1_000_000];
 const CUTS: usize = 1024;
 
 fn run(context: &Context) -> Vec<Table> {
-    let Some(lit) = LitScene::new(context) else { return Vec::new() };
+    let lit = LitScene::new(context);
     let (world, diagonal) = (lit.world, lit.world.diagonal);
     let mut cases = Vec::new();
     for indirect in LIGHTS {

@@ -17,19 +17,13 @@ pub fn run(args: BenchArgs) -> Result<(), Failure> {
         return Err(Failure::usage(anyhow!("there is no benchmark {name}")));
     };
     let name = benchmark.name;
-    let (needs_scene, measure) = match benchmark.kind {
+    let measure = match benchmark.kind {
         Kind::Study { .. } => return study::run(benchmark, args),
-        Kind::Parts { needs_scene, run } => (needs_scene, run),
+        Kind::Parts(measure) => measure,
     };
-    let remedy = match (needs_scene, args.scenes.len()) {
-        (true, 1) | (false, 0) => None,
-        (true, 0) => Some("add the scene to measure: SCENE is missing"),
-        (true, _) => Some("give one scene only"),
-        (false, _) => Some("leave the scene out, the benchmark needs none"),
+    let [scene] = &args.scenes[..] else {
+        return Err(Failure::usage(anyhow!("bench {name}: give one scene to measure, as SCENE")));
     };
-    if let Some(remedy) = remedy {
-        return Err(Failure::usage(anyhow!("bench {name}: {remedy}")));
-    }
     if args.study != StudyArgs::default() {
         return Err(Failure::usage(anyhow!(
             "bench {name}: the options under \"Studies\" would have no effect"
@@ -49,17 +43,10 @@ pub fn run(args: BenchArgs) -> Result<(), Failure> {
     };
     let machine = machine::facts(settings.threads);
     let pool = threads::pool(settings.threads)?;
-    let session = args
-        .scenes
-        .first()
-        .map(|path| pool.install(|| opened::open(path, &LoadOptions::default())))
-        .transpose()?;
-    if let Some(opened) = &session {
-        Inputs::of_session(&opened.session).check_apart(files())?;
-    }
+    let session = pool.install(|| opened::open(scene, &LoadOptions::default()))?.session;
+    Inputs::of_session(&session).check_apart(files())?;
     let results = pool.install(|| {
-        let session = session.as_ref().map(|opened| &opened.session);
-        let context = Context { session, settings, machine, say: &|what| talk::note(what) };
+        let context = Context { session: &session, settings, machine, say: &|what| talk::note(what) };
         benchmark.results(&context, &measure(&context))
     });
     let (json, markdown) = (format!("{:#}\n", results.json), results.document.markdown());

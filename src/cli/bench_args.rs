@@ -14,15 +14,14 @@ pub struct BenchArgs {
     /// Name of the benchmark [default: print the list of benchmarks]
     #[arg(value_parser = PossibleValuesParser::new(REGISTRY.iter().map(|b| b.name)), hide_possible_values = true)]
     pub benchmark: Option<String>,
-    /// Scenes to measure, if the benchmark needs any: lightsplat TOML, Mitsuba or glTF. Studies also accept names of
-    /// scenes in --scenes
+    /// Scenes to measure: lightsplat TOML, Mitsuba or glTF. Studies also accept names of scenes in --scenes
     #[arg(value_name = "SCENE")]
     pub scenes: Vec<PathBuf>,
     /// Number of threads of multi-threaded cases [default: number of processors]
     #[arg(long, env = threads::VARIABLE, value_parser = clap::value_parser!(u32).range(1..=4096))]
     pub threads: Option<u32>,
-    /// Number of samples per case. A study renders each image this often, and the fastest run counts. `extremes` takes
-    /// the number of seeds [default: 7; studies: 1; extremes: 4]
+    /// Number of samples per case. A study renders each image this often, and the fastest run counts
+    /// [default: 7; studies: 1]
     #[arg(long, value_parser = clap::value_parser!(u32).range(1..=1000))]
     pub repeats: Option<u32>,
     /// Approximate minimum duration of a sample in seconds [default: 0.05]
@@ -59,7 +58,7 @@ pub struct StudyArgs {
     /// Maximum seconds of path tracing per reference [default: 1800]
     #[arg(long, value_name = "SECONDS", value_parser = parse_seconds)]
     pub reference_seconds: Option<f64>,
-    /// Vary only this setting, in `trade` or `extremes`. May be repeated. A wrong name prints the list of settings
+    /// Vary only this setting, in `trade`, `growth` or `calibrate`. May be repeated. A wrong name prints the list
     #[arg(long = "knob", value_name = "NAME")]
     pub knobs: Vec<String>,
     /// Figures of other programs for the chart of `race`, a JSON object per line (see docs/benchmarks.md)
@@ -95,7 +94,7 @@ mod tests {
         let defaults = Settings::default();
         let reference = ReferenceSettings::default();
         for (option, default) in [
-            ("repeats", format!("{}; studies: 1; extremes: 4", defaults.repeats)),
+            ("repeats", format!("{}; studies: 1", defaults.repeats)),
             ("seconds", defaults.seconds.to_string()),
             ("reference-spp", reference.spp.to_string()),
             ("reference-seconds", reference.seconds.to_string()),

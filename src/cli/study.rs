@@ -7,7 +7,7 @@ use super::{interrupt, talk, threads};
 use anyhow::{Context as _, anyhow};
 use base::progress::Control;
 use bench::study::{PeerFigure, Plan, ReferenceSettings, Study, StudyError, file_of};
-use bench::{Benchmark, Kind, Scenes};
+use bench::{Benchmark, Kind};
 use render::session::OpenError;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -28,17 +28,9 @@ pub fn run(benchmark: &Benchmark, args: BenchArgs) -> Result<(), Failure> {
     let Kind::Study { scenes, pixels, run } = &benchmark.kind else {
         return Err(Failure::usage(anyhow!("{name} is not a study")));
     };
-    let (files, repeats) = match scenes {
-        Scenes::Files(defaults) => (scene_files(&args, defaults), 1),
-        Scenes::Own(seeds) => (args.scenes.clone(), *seeds),
-    };
-    let remedy = match (scenes, files.is_empty()) {
-        (Scenes::Files(_), true) => Some("add the scenes to render: SCENE is missing"),
-        (Scenes::Own(_), false) => Some("leave the scene out, the study makes its own scenes"),
-        _ => None,
-    };
-    if let Some(remedy) = remedy {
-        return Err(Failure::usage(anyhow!("bench {name}: {remedy}")));
+    let files = scene_files(&args, scenes);
+    if files.is_empty() {
+        return Err(Failure::usage(anyhow!("bench {name}: add the scenes to render: SCENE is missing")));
     }
     let peers = args.study.with.as_deref().map(PeerFigure::read).transpose().map_err(failure)?;
     let control = Arc::new(Control::new());
@@ -48,7 +40,7 @@ pub fn run(benchmark: &Benchmark, args: BenchArgs) -> Result<(), Failure> {
     let plan = Plan {
         folder: folder.clone(),
         threads: threads::count(args.threads),
-        repeats: args.repeats.map_or(repeats, |n| n as usize),
+        repeats: args.repeats.map_or(1, |n| n as usize),
         resolution: args.study.resolution.map_or(*pixels, |size| size.pixels(*pixels)),
         reference: ReferenceSettings {
             spp: args.study.reference_spp.unwrap_or(defaults.spp),

@@ -24,8 +24,9 @@ fn without_machine(report: &str) -> &str {
 
 /// The table of some scenes, first of them `path.toml`, in a sandbox.
 fn table(sandbox: &Sandbox, scenes: &[&str], reference_spp: &str) -> Finished {
-    // The room with a path as long as the walk of the table.
-    fs::write(sandbox.path("path.toml"), super::walk::PATH.replace("frame = 6", "frame = 24")).unwrap();
+    // The room with a path as long as the walk of the table. Its light is direct, but photons would take seconds.
+    let path = super::walk::PATH.replace("frame = 6", "frame = 24");
+    fs::write(sandbox.path("path.toml"), format!("max_depth = 2\n{path}")).unwrap();
     let common = ["--scenes", SCENES, "-o", "study", "--resolution", "32x32", "--threads", "2"];
     let reference = ["--reference-spp", reference_spp];
     sandbox.run(&[&["bench", "table1"], scenes, &common[..], &reference].concat()).expect(0)
@@ -108,7 +109,7 @@ fn the_table_renders_what_was_lost_and_adds_to_references() {
 }
 
 #[test]
-fn the_trade_sweeps_knobs_and_finds_the_front() {
+fn the_trade_sweeps_knobs_and_draws_the_front() {
     let sandbox = Sandbox::new();
     let knobs = ["--knob", "epsilon", "--knob", "spp"];
     // The room has no indirect light.
@@ -135,16 +136,12 @@ fn the_trade_sweeps_knobs_and_finds_the_front() {
     let sorted = |sort: &str| points.iter().filter(|point| point["sort"] == sort).count();
     let sorts = ["default", "quality", "other"].map(sorted);
     assert_eq!(sorts, [1, 4, 3]);
-    let figures = |point: &Value| [point["seconds"].as_f64().unwrap(), point["flip"].as_f64().unwrap()];
-    let front: Vec<&Value> =
-        points.iter().filter(|point| point["fronts"].as_array().unwrap().contains(&"flip".into())).collect();
-    assert!(!front.is_empty());
-    for point in points.iter().filter(|point| point["sort"] != "other" && point["sort"] != "denoised_path") {
-        let [seconds, flip] = figures(point);
-        assert!(front.iter().all(|p| !(figures(p)[0] > seconds && figures(p)[1] > flip)), "{point}");
-    }
     let svg = fs::read_to_string(sandbox.path("study/cornell-fronts.svg")).unwrap();
-    assert!(svg.matches("class=\"head\"").count() == 3 && svg.contains(">one knob turned<"));
+    assert!(
+        svg.matches("class=\"head\"").count() == 3
+            && svg.contains(">one knob turned<")
+            && svg.contains(">front<")
+    );
 
     let again = run();
     assert_eq!(rendered(&again.stderr), [""; 0]);
@@ -154,8 +151,9 @@ fn the_trade_sweeps_knobs_and_finds_the_front() {
 
 #[test]
 fn the_race_tells_times_within_those_of_its_pictures() {
-    let sandbox = Sandbox::new();
-    let base = ["bench", "race", "room.xml", "-o", "study", "--resolution", "48x32", "--threads", "2"];
+    // Few edges, since virtual lights take a second in each image.
+    let sandbox = Sandbox::with("direct.xml", &super::ROOM.replace("value=\"4\"", "value=\"2\""));
+    let base = ["bench", "race", "direct.xml", "-o", "study", "--resolution", "24x16", "--threads", "2"];
     let run = || sandbox.run(&[&base[..], &["--reference-spp", "16"]].concat()).expect(0);
     let first = run();
     let race = json(&sandbox.path("study/race.json"));
@@ -216,7 +214,13 @@ fn what_has_no_effect_or_is_not_there_is_refused() {
     assert!(
         sandbox.run(&["bench", "table1", "--export-json", "a.json"]).expect(2).stderr.contains("--output")
     );
-    assert!(sandbox.run(&["bench", "bsdf", "--reference-spp", "8"]).expect(2).stderr.contains("Studies"));
+    assert!(
+        sandbox
+            .run(&["bench", "shadow", "room.xml", "--reference-spp", "8"])
+            .expect(2)
+            .stderr
+            .contains("Studies")
+    );
     assert!(sandbox.run(&["bench", "table1", "nowhere"]).expect(3).stderr.contains("scenes/nowhere.toml"));
     sandbox.run(&["bench", "table1", "-o", "room.xml/below"]).expect(4);
 }

@@ -1,8 +1,7 @@
 //! Figures of a scene that prices and choices are judged by.
 
-use crate::study::{Answer, Errors};
+use crate::study::Answer;
 use render::plan::MethodChoice;
-use serde::Serialize;
 
 /// A budget, and the errors of both methods within it.
 pub struct Budget {
@@ -24,13 +23,8 @@ pub struct Budget {
     pub cost: Figures,
 }
 
-/// Errors that choices are judged by.
-#[derive(Clone, Copy, Serialize)]
-pub struct Figures {
-    /// Root mean square error of the displayed image.
-    pub displayed: f64,
-    pub flip: f64,
-}
+/// Errors that choices are judged by: root mean square error of the displayed image, and FLIP.
+pub type Figures = [f64; 2];
 
 /// Answer for a scene.
 pub struct SceneAnswer {
@@ -41,16 +35,4 @@ pub struct SceneAnswer {
     pub pilot_seconds: f64,
     /// Choice at the default settings.
     pub choice: MethodChoice,
-}
-
-impl Figures {
-    /// Takes the errors of an image.
-    pub fn new(errors: &Errors) -> Figures {
-        Figures { displayed: errors.displayed_rmse(), flip: errors.flip }
-    }
-
-    /// Combines errors with others.
-    pub fn with(self, other: Figures, f: impl Fn(f64, f64) -> f64) -> Figures {
-        Figures { displayed: f(self.displayed, other.displayed), flip: f(self.flip, other.flip) }
-    }
 }

@@ -155,7 +155,7 @@ impl Fits {
             let curve: Vec<(f64, f64)> = paths.map(point).collect();
             for budget in &scene.budgets {
                 // Fewer paths than samples are never expected, so that such images tell nothing.
-                let paths = time_to(budget.cache.displayed, &curve).filter(|_| budget.paths_a_sample > 1.0);
+                let paths = time_to(budget.cache[0], &curve).filter(|_| budget.paths_a_sample > 1.0);
                 let Some(Bounded::About(paths)) = paths else { continue };
                 let of_variance = PRICES.paths_per_sample * budget.quotient.powf(PRICES.by_variance);
                 let by_smallness = budget.paths_a_sample / of_variance;

@@ -3,18 +3,16 @@
 //!
 //! The study writes `calibration.rs`, which replaces `src/render/calibration.rs` ([`fit`]).
 //!
-//! Budgets are the processor seconds of the cache at five levels of its settings. The error of paths within a budget is
-//! interpolated between their images. The cost of a choice is its error over the error of the better method.
+//! Budgets are the processor seconds of the cache at five levels of its settings, or at those that `--knob` names. The
+//! error of paths within a budget is interpolated between their images. The cost of a choice is its error over the
+//! error of the better method.
 
 mod answer;
 mod fit;
 
 use super::document::Grid;
-use super::plot::{Colour, Line};
-use super::study::{
-    Candidate, Cell, Column, Curve, Figure, Question, Shot, Study, StudyError, Subject, figure, seconds,
-};
-use super::{Benchmark, Kind, Results, Scenes};
+use super::study::{Candidate, Cell, Column, Question, Shot, Study, StudyError, Subject, figure, seconds};
+use super::{Benchmark, Kind, Results};
 use answer::{Budget, Figures, SceneAnswer};
 use base::stats::Stopwatch;
 use fit::Fitted;
@@ -27,14 +25,15 @@ pub(super) const BENCHMARK: Benchmark = Benchmark {
     name: "calibrate",
     about: "Prices of work and constants of the choice between methods, fitted; how often the choice is right",
     kind: Kind::Study {
-        scenes: Scenes::Files(&["cornell", "knot", "nave", "kitchen", "apartment", "hall", "plaza"]),
+        scenes: &["cornell", "knot", "nave", "kitchen", "apartment", "hall", "plaza"],
         pixels: [256, 256],
         run,
     },
 };
 
-/// Levels of the cache whose times are the budgets. Level 4 is the default.
-const LEVELS: [f64; 5] = [1.0, DRAFT, PREVIEW, 4.0, FINAL];
+/// Levels of the cache whose times are the budgets, by name. Level 4 is the default.
+const LEVELS: [(&str, f64); 5] =
+    [("level 1", 1.0), ("draft", DRAFT), ("preview", PREVIEW), ("level 4", 4.0), ("final", FINAL)];
 
 /// Number of trees of the forest, which has the most triangles.
 const FOREST: u32 = 100;
@@ -53,16 +52,8 @@ const QUESTION: Question = Question {
     table: &[
         Column::new("spp", "", |_, s| Cell::exact(s.candidate.method.spp())),
         Column::new("seconds", "", |_, s| Cell::seconds(s.seconds())),
-        Column::new("errors", "", |_, s| Cell::exact(Figures::new(&s.errors))),
+        Column::new("errors", "", |_, s| Cell::exact(figures(s))),
     ],
-    figures: &[Figure {
-        name: "RMSE of the displayed image",
-        error: |s| Some(s.errors.displayed_rmse()),
-        curves: &[
-            Curve { name: "cache", colour: Colour::Red, line: Line::All, holds: |c| !c.is_path() },
-            Curve { name: "path --denoise", colour: Colour::Green, line: Line::All, holds: |c| c.is_path() },
-        ],
-    }],
     ..Question::PLAIN
 };
 
@@ -74,14 +65,14 @@ const BUDGETS: &[Column<Budget>] = &[
     Column::new("seconds", "seconds", |_, b| Cell::seconds(b.seconds)),
     Column::new("cache", "", |_, b| Cell::exact(b.cache)),
     Column::new("paths", "", |_, b| Cell::exact(b.paths)),
-    Column::new("", "RMSE: cache", |_, b| Cell::figure(b.cache.displayed)),
-    Column::new("", "paths", |_, b| Cell::figure(b.paths.displayed)),
-    Column::new("", "FLIP: cache", |_, b| Cell::figure(b.cache.flip)),
-    Column::new("", "paths", |_, b| Cell::figure(b.paths.flip)),
+    Column::new("", "RMSE: cache", |_, b| Cell::figure(b.cache[0])),
+    Column::new("", "paths", |_, b| Cell::figure(b.paths[0])),
+    Column::new("", "FLIP: cache", |_, b| Cell::figure(b.cache[1])),
+    Column::new("", "paths", |_, b| Cell::figure(b.paths[1])),
     Column::new("ahead", "expected", |_, b| Cell::figure(b.ahead)),
     Column::new("cost", "", |_, b| Cell::exact(b.cost)),
-    Column::new("", "cost: RMSE", |_, b| Cell::figure(b.cost.displayed)),
-    Column::new("", "FLIP", |_, b| Cell::figure(b.cost.flip)),
+    Column::new("", "cost: RMSE", |_, b| Cell::figure(b.cost[0])),
+    Column::new("", "FLIP", |_, b| Cell::figure(b.cost[1])),
 ];
 
 /// The planner's results for a scene.
@@ -113,14 +104,21 @@ fn scene(study: &Study, subject: Subject) -> Result<Option<SceneAnswer>, StudyEr
         (study.say)(&format!("{}: there is no light, and nothing to choose", subject.name));
         return if study.control.is_cancelled() { Err(StudyError::Interrupted) } else { Ok(None) };
     };
-    let level = |level| Candidate::new(format!("cache, level {level}"), pilot.ladder.at(level));
-    let images: Vec<_> = SPP.map(Candidate::denoised_path).into_iter().chain(LEVELS.map(level)).collect();
+    let wanted = study.plan.knobs(&LEVELS.map(|(name, _)| name))?;
+    let levels = LEVELS.into_iter().filter(|(name, _)| wanted.contains(name));
+    let level = |(name, level)| Candidate::new(format!("cache, {name}"), pilot.ladder.at(level));
+    let images: Vec<_> = SPP.map(Candidate::denoised_path).into_iter().chain(levels.map(level)).collect();
     let answer = study.ask(Question { images: &images, ..QUESTION }, [Ok(subject)])?;
     let (paths, cache) = answer.shots.split_at(SPP.len());
     let budgets = cache.iter().map(|shot| Budget::new(shot, paths, &pilot.chooser)).collect();
     let choice = pilot.chooser.on_film(&Method::default());
     let denoising = answer.reference.as_ref().map_or([None; 3], |reference| fit::denoising(&reference.mean));
     Ok(Some(SceneAnswer { answer, denoising, budgets, pilot_seconds: pilot.seconds, choice }))
+}
+
+/// Returns the errors of an image.
+fn figures(shot: &Shot) -> Figures {
+    [shot.errors.displayed_rmse(), shot.errors.flip]
 }
 
 impl Planned {
@@ -137,13 +135,15 @@ impl Budget {
     /// Judges a choice.
     fn new(shot: &Shot, paths: &[Shot], chooser: &Chooser) -> Budget {
         let method = &shot.candidate.method;
-        let curve: Vec<(f64, Figures)> =
-            paths.iter().map(|path| (path.seconds(), Figures::new(&path.errors))).collect();
-        let (cache, paths) = (Figures::new(&shot.errors), error_within(shot.seconds(), &curve));
+        let curve: Vec<(f64, Figures)> = paths.iter().map(|path| (path.seconds(), figures(path))).collect();
+        let (cache, paths) = (figures(shot), error_within(shot.seconds(), &curve));
         let choice = chooser.on_film(method);
         let chose_paths = matches!(choice.method, Method::Path(_));
         let chosen = if chose_paths { paths } else { cache };
-        let cost = |chosen: f64, best: f64| if chosen > best { chosen / best } else { 1.0 };
+        let cost = |i: usize| {
+            let best = cache[i].min(paths[i]);
+            if chosen[i] > best { chosen[i] / best } else { 1.0 }
+        };
         Budget {
             options: method.scaled_options(),
             spp: method.spp().into(),
@@ -154,7 +154,7 @@ impl Budget {
             quotient: choice.quotient,
             paths_a_sample: choice.paths_a_sample,
             ahead: choice.ahead,
-            cost: chosen.with(cache.with(paths, f64::min), cost),
+            cost: [0, 1].map(cost),
         }
     }
 }
@@ -166,27 +166,26 @@ fn error_within(seconds: f64, images: &[(f64, Figures)]) -> Figures {
     let last = above.clamp(1, images.len() - 1);
     let (a, b) = (&images[last - 1], &images[last]);
     let share = (seconds / a.0).ln() / (b.0 / a.0).ln();
-    a.1.with(b.1, |a, b| a * (b / a).powf(share))
+    [0, 1].map(|i| a.1[i] * (b.1[i] / a.1[i]).powf(share))
 }
 
 /// Adds the costs over all budgets.
 fn total<'b>(results: &mut Results, budgets: impl Iterator<Item = &'b Budget>) {
     // Some images differ from the reference by its noise alone.
-    let measurable = |budget: &&Budget| budget.cache.displayed.min(budget.paths.displayed) > 0.0;
+    let measurable = |budget: &&Budget| budget.cache[0].min(budget.paths[0]) > 0.0;
     let costs: Vec<Figures> = budgets.filter(measurable).map(|budget| budget.cost).collect();
     let at = |i: usize| {
-        let of = |of: fn(&Figures) -> f64| {
-            let mut values: Vec<f64> = costs.iter().map(of).collect();
+        [0, 1].map(|figure| {
+            let mut values: Vec<f64> = costs.iter().map(|cost| cost[figure]).collect();
             values.sort_by(f64::total_cmp);
             values.get(i).copied().unwrap_or(f64::NAN)
-        };
-        Figures { displayed: of(|cost| cost.displayed), flip: of(|cost| cost.flip) }
+        })
     };
     let (median, worst) = (at(costs.len() / 2), at(costs.len().saturating_sub(1)));
-    let right = costs.iter().filter(|cost| cost.displayed <= 1.0).count();
+    let right = costs.iter().filter(|cost| cost[0] <= 1.0).count();
     results.json["total"] =
         json!({ "right": right, "choices": costs.len(), "median": median, "worst": worst });
-    let text = |of: Figures| format!("{} by RMSE, {} by FLIP", figure(of.displayed), figure(of.flip));
+    let text = |[rmse, flip]: Figures| format!("{} by RMSE, {} by FLIP", figure(rmse), figure(flip));
     results.document.text(&format!(
         "{right} of {} choices were right by RMSE. Cost: median {}; worst {}.",
         costs.len(),
@@ -223,7 +222,6 @@ fn section(results: &mut Results, scene: &SceneAnswer) {
     results.push("scenes", answer.facts(), pilot);
     let document = &mut results.document;
     document.heading(2, &answer.scene);
-    answer.draw(document, &answer.scene, answer.panels());
     document.text(&format!(
         "A sample of the cache equals {} paths, each with {} times its rays. The pilot took {} s, {} rays.",
         figure(choice.paths_a_sample),
@@ -241,14 +239,14 @@ mod tests {
     #[test]
     fn errors_are_interpolated_between_images_and_go_on_beyond_them() {
         // The error halves as the time is four times as long.
-        let image = |seconds, error| (seconds, Figures { displayed: error, flip: 2.0 * error });
+        let image = |seconds, error| (seconds, [error, 2.0 * error]);
         let paths = [image(1.0, 0.4), image(4.0, 0.2), image(16.0, 0.1)];
         for (seconds, expected) in
             [(0.25, 0.8), (1.0, 0.4), (2.0, 0.4 / 2f64.sqrt()), (16.0, 0.1), (64.0, 0.05)]
         {
             let found = error_within(seconds, &paths);
-            assert!((found.displayed / expected - 1.0).abs() < 1e-9, "{seconds} {}", found.displayed);
-            assert!((found.flip / (2.0 * expected) - 1.0).abs() < 1e-9);
+            assert!((found[0] / expected - 1.0).abs() < 1e-9, "{seconds} {}", found[0]);
+            assert!((found[1] / (2.0 * expected) - 1.0).abs() < 1e-9);
         }
     }
 }

@@ -7,11 +7,10 @@
 
 mod threads;
 
-use super::plot::{Colour, Line, Panel, Series};
 use super::study::{
-    Answer, Axis, Candidate, Cell, Column, Question, Shot, Study, StudyError, Subject, Truth, figure,
+    Answer, Candidate, Cell, Column, Question, Shot, Study, StudyError, Subject, Truth, figure,
 };
-use super::{Benchmark, Kind, Results, Scenes};
+use super::{Benchmark, Kind, Results};
 use base::stats::{Stage, Stopwatch};
 use render::method::Method;
 use serde_json::json;
@@ -21,7 +20,7 @@ use world::view::View;
 pub(super) const BENCHMARK: Benchmark = Benchmark {
     name: "growth",
     about: "How time and error grow with the image, with lamps, triangles and instances",
-    kind: Kind::Study { scenes: Scenes::Files(&["cornell", "nave"]), pixels: [512, 512], run },
+    kind: Kind::Study { scenes: &["cornell", "nave"], pixels: [512, 512], run },
 };
 
 /// Factors on the length of each side of the image.
@@ -63,21 +62,6 @@ const QUESTION: Question = Question {
 /// Function that writes the meshes of a scene of some size into a folder, and returns its description.
 type WriteSized = fn(u32, &Path) -> std::io::Result<String>;
 
-/// A curve of a plot: name, colour and value of an image.
-type Curve = (&'static str, Colour, fn(&Shot) -> Option<f64>);
-
-/// Curves of the times.
-const TIMES: [Curve; 4] = [
-    ("eye pass", Colour::Red, |s| Some(s.counted.seconds(&[Stage::EyePass]))),
-    ("cache", Colour::Blue, |s| Some(s.counted.seconds(&CACHE))),
-    ("denoising", Colour::Green, |s| Some(s.counted.seconds(&[Stage::Denoise]))),
-    ("whole", Colour::Plain, |s| Some(s.seconds())),
-];
-
-/// Curves of the errors.
-const ERRORS: [Curve; 2] =
-    [("at equal samples", Colour::Red, error), ("at equal time", Colour::Blue, at_equal_time)];
-
 /// Returns the error, if there is a reference.
 fn error(shot: &Shot) -> Option<f64> {
     shot.errors.rel_mse.is_finite().then(|| shot.errors.rel_rmse())
@@ -90,30 +74,29 @@ fn at_equal_time(shot: &Shot) -> Option<f64> {
 
 fn run(study: &Study, files: &[PathBuf]) -> Result<Results, StudyError> {
     let knobs = study.plan.knobs(&["pixels", "lamps", "triangles", "instances", "threads"])?;
-    let of = |knob| Question { axis: Axis::Value(knob), ..QUESTION };
     let default = [Candidate::new("default", Method::default())];
     let noisy = default.clone().map(|candidate| Candidate { denoise: false, ..candidate });
     let mut results = Results::new("Growth", study.facts(), LEGEND);
     for file in files.iter().filter(|_| knobs.contains(&"pixels")) {
         let scenes = SIDES.iter().map(|&side| enlarged(study, file, side));
-        let answer = study.ask(Question { images: &default, ..of("pixels") }, scenes)?;
-        section(&mut results, &format!("Pixels of {}", answer.scene), &answer);
+        let answer = study.ask(Question { images: &default, ..QUESTION }, scenes)?;
+        section(&mut results, &format!("Pixels of {}", answer.scene), "pixels", &answer);
     }
     if knobs.contains(&"lamps") {
-        let question = Question { images: &noisy, error: Truth::Pixels, ..of("lamps") };
+        let question = Question { images: &noisy, error: Truth::Pixels, ..QUESTION };
         let answer = study.ask(question, LAMPS.iter().map(|&count| plaza(study, count)))?;
-        section(&mut results, "Lamps of a plaza", &answer);
+        section(&mut results, "Lamps of a plaza", "lamps", &answer);
     }
     if knobs.contains(&"triangles") {
         let scenes =
             TRIANGLES.iter().map(|&count| sized(study, count, "triangles", lightsplat_scenes::dunes));
-        let answer = study.ask(Question { images: &default, ..of("triangles") }, scenes)?;
-        section(&mut results, "Triangles of dunes", &answer);
+        let answer = study.ask(Question { images: &default, ..QUESTION }, scenes)?;
+        section(&mut results, "Triangles of dunes", "triangles", &answer);
     }
     if knobs.contains(&"instances") {
         let scenes = TREES.iter().map(|&count| sized(study, count, "trees", lightsplat_scenes::forest));
-        let answer = study.ask(Question { images: &default, ..of("triangles seen") }, scenes)?;
-        section(&mut results, "Trees of a forest", &answer);
+        let answer = study.ask(Question { images: &default, ..QUESTION }, scenes)?;
+        section(&mut results, "Trees of a forest", "triangles seen", &answer);
     }
     for file in files.iter().filter(|_| knobs.contains(&"threads")) {
         threads::measure(study, file, &mut results)?;
@@ -147,15 +130,12 @@ fn sized(study: &Study, size: u32, unit: &str, write: WriteSized) -> Result<Subj
     Ok(Subject { value: subject.triangles as f64, load, ..subject })
 }
 
-fn section(results: &mut Results, name: &str, answer: &Answer) {
-    let facts = json!({ "name": name, "knob": answer.axis() });
+fn section(results: &mut Results, name: &str, quantity: &str, answer: &Answer) {
+    let facts = json!({ "name": name, "knob": quantity });
     results.push("series", facts, json!({ "points": answer.rows() }));
     results.document.heading(2, name);
-    let mut panels = vec![panel(answer, "processor seconds", &TIMES)];
-    panels.extend(answer.reference.is_some().then(|| panel(answer, "relative error", &ERRORS)));
-    answer.draw(&mut results.document, name, panels);
     let mut grid = answer.grid(&answer.shots);
-    grid.heads[0] = answer.axis().to_owned();
+    grid.heads[0] = quantity.to_owned();
     if let [first, .., last] = &answer.shots[..] {
         let grown = |column: &Column<Shot>| {
             let [a, b] = [first, last].map(|shot| (column.cell)(answer, shot).exact.as_f64());
@@ -170,15 +150,4 @@ fn section(results: &mut Results, name: &str, answer: &Answer) {
         grid.rows.push(["growth".to_owned()].into_iter().chain(columns.map(grown)).collect());
     }
     results.document.grid(&grid);
-}
-
-/// Returns a panel of curves.
-fn panel(answer: &Answer, title: &str, curves: &[Curve]) -> Panel {
-    let series = |&(name, colour, at): &Curve| Series {
-        name: name.to_owned(),
-        colour,
-        line: Line::All,
-        points: answer.points(&answer.shots, at),
-    };
-    Panel { title: title.to_owned(), series: curves.iter().map(series).collect() }
 }

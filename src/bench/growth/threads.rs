@@ -5,9 +5,8 @@
 
 use crate::Results;
 use crate::document::Grid;
-use crate::plot::{Chart, Colour, Line, Panel, Point, Series};
 use crate::study::{Candidate, Study, StudyError, figure, seconds};
-use base::stats::{StageTime, Stats};
+use base::stats::{Stage, StageTime, Stats};
 use rayon::ThreadPoolBuilder;
 use render::method::Method;
 use serde_json::json;
@@ -37,7 +36,7 @@ fn serial_share(speed_up: f64, threads: usize) -> Option<f64> {
     (threads > 1).then(|| (1.0 / speed_up - 1.0 / n) / (1.0 - 1.0 / n))
 }
 
-/// Renders the default image of a scene by more and more threads, and adds tables and a plot.
+/// Renders the default image of a scene by more and more threads, and adds tables.
 pub(super) fn measure(study: &Study, file: &Path, results: &mut Results) -> Result<(), StudyError> {
     let subject = study.subject(file)?;
     let candidate = Candidate::new("default", Method::default());
@@ -68,23 +67,13 @@ fn add(results: &mut Results, scene: &str, runs: &[Run]) {
     let (Some(first), Some(last)) = (runs.first(), runs.last()) else { return };
     let speed_up = |run: &Run| first.whole.wall_seconds / run.whole.wall_seconds.max(f64::MIN_POSITIVE);
     results.document.heading(2, &format!("Threads of {scene}"));
-    let point = |run: &Run, y: f64| Point { x: run.threads as f64, y, name: String::new() };
-    let (measured, ideal) =
-        runs.iter().map(|run| (point(run, speed_up(run)), point(run, run.threads as f64))).unzip();
-    let series =
-        |name: &str, colour, points| Series { name: name.to_owned(), colour, line: Line::All, points };
-    let series =
-        vec![series("measured", Colour::Red, measured), series("as many as threads", Colour::Plain, ideal)];
-    let panels = vec![Panel { title: format!("{scene}: speed-up"), series }];
-    let chart = Chart { axis: "threads", panels, caption: Vec::new() };
-    results.document.plot(&format!("threads-{scene}"), &chart);
     let heads = ["threads", "wall", "processor", "speed-up", "busy %", "serial %"];
-    let mut grid = Grid { heads: heads.map(str::to_owned).to_vec(), ..Grid::default() };
+    let mut rows = Vec::new();
     for run in runs {
         let share = serial_share(speed_up(run), run.threads);
         let StageTime { wall_seconds, cpu_seconds } = run.whole;
         let busy = run.whole.busy(run.threads);
-        grid.rows.push(vec![
+        rows.push(vec![
             run.threads.to_string(),
             seconds(wall_seconds),
             seconds(cpu_seconds),
@@ -98,27 +87,21 @@ fn add(results: &mut Results, scene: &str, runs: &[Run]) {
         });
         results.push("threads", json!({ "scene": scene }), figures);
     }
-    results.document.grid(&grid);
+    results.document.grid(&Grid::new(0, &heads, rows));
     results.document.grid(&stages(last));
 }
 
 /// Returns a table of the stages of an image.
 fn stages(run: &Run) -> Grid {
+    let share = |time: &StageTime| time.cpu_seconds / run.whole.cpu_seconds.max(f64::MIN_POSITIVE);
+    let row = |(stage, time): (Stage, StageTime)| {
+        let percent = [share(&time), time.busy(run.threads)].map(|share| figure(100.0 * share));
+        let times = [time.wall_seconds, time.cpu_seconds].map(seconds);
+        [stage.name().to_owned()].into_iter().chain(times).chain(percent).collect()
+    };
     let heads = [&format!("stage, {} threads", run.threads), "wall", "processor", "of all %", "busy %"];
-    let mut grid = Grid { names: 1, heads: heads.map(str::to_owned).to_vec(), ..Grid::default() };
-    for (stage, time) in run.stats.stages() {
-        let share = time.cpu_seconds / run.whole.cpu_seconds.max(f64::MIN_POSITIVE);
-        if share >= LISTED {
-            grid.rows.push(vec![
-                stage.name().to_owned(),
-                seconds(time.wall_seconds),
-                seconds(time.cpu_seconds),
-                figure(100.0 * share),
-                figure(100.0 * time.busy(run.threads)),
-            ]);
-        }
-    }
-    grid
+    let listed = run.stats.stages().filter(|(_, time)| share(time) >= LISTED);
+    Grid::new(1, &heads, listed.map(row).collect())
 }
 
 #[cfg(test)]

@@ -1,9 +1,10 @@
 //! A chart of several panels with one legend and a caption.
 
 use super::panel::{Area, escaped, key, panel, text};
-use super::series::Series;
-use super::style::standalone;
+use super::series::{COLOURS, Series};
 
+/// Name of the horizontal axes.
+const AXIS: &str = "processor seconds";
 /// Width of a chart, and height of a row of panels.
 const WIDTH: f64 = 780.0;
 const ROW: f64 = 250.0;
@@ -22,10 +23,8 @@ pub struct Panel {
     pub series: Vec<Series>,
 }
 
-/// A chart: panels in two columns over one quantity.
+/// A chart: panels in two columns over processor seconds.
 pub struct Chart {
-    /// Name of the horizontal axes.
-    pub axis: &'static str,
     /// Panels, row by row.
     pub panels: Vec<Panel>,
     /// Paragraphs of the caption.
@@ -63,7 +62,7 @@ impl Chart {
     pub fn description(&self) -> String {
         let titles: Vec<&str> = self.panels.iter().map(|panel| &*panel.title).collect();
         let names: Vec<String> = self.legend().into_iter().map(|series| series.name).collect();
-        format!("{} over {}: {}", titles.join("; "), self.axis, names.join(", "))
+        format!("{} over {AXIS}: {}", titles.join("; "), names.join(", "))
     }
 
     /// Returns one series per name, in the order of appearance.
@@ -85,7 +84,7 @@ impl Chart {
         let mut svg =
             text(area.left, y + 14.0, "start", &panel_of.title).replacen("<text", "<text class=\"head\"", 1);
         svg += &panel(area, &panel_of.series).unwrap_or_default();
-        svg + &text(0.5 * (area.left + area.right), area.bottom + 33.0, "middle", self.axis)
+        svg + &text(0.5 * (area.left + area.right), area.bottom + 33.0, "middle", AXIS)
     }
 }
 
@@ -104,6 +103,43 @@ fn lines(text: &str, most: usize) -> Vec<String> {
     lines
 }
 
+/// A rule: its selector, its declarations with `@` for the colour, and the colour in light and in dark.
+type Rule = (&'static str, &'static str, [&'static str; 2]);
+
+/// Rules of the parts that are no series.
+const RULES: [Rule; 4] = [
+    (".plot text", "fill:@", ["#222", "#e6e6e6"]),
+    (".plot .minor", "fill:@", ["#666", "#a0a0a0"]),
+    (".axis", "stroke:@;fill:none", ["#777", "#999"]),
+    (".grid", "stroke:@;fill:none", ["#e2e2e2", "#383838"]),
+];
+
+/// Font and lines.
+const FONT: &str = ".plot text{font:12px system-ui,-apple-system,'Segoe UI',sans-serif}.plot .head{font-weight:600}\
+.plot path.line{stroke-width:1.8;fill:none}";
+
+/// Returns the text of a file with elements of a plot.
+fn standalone(width: f64, height: f64, elements: &str) -> String {
+    let [light, dark] = [theme(0), theme(1)];
+    format!(
+        "<svg class=\"plot\" viewBox=\"0 0 {width} {height:.0}\" width=\"{width}\" role=\"img\" \
+         xmlns=\"http://www.w3.org/2000/svg\">\n<style>{FONT}{light}@media(prefers-color-scheme:dark){{{dark}}}</style>\n\
+         {elements}</svg>\n"
+    )
+}
+
+/// Returns rules and colours of series for light (0) or dark (1) surroundings.
+fn theme(ground: usize) -> String {
+    let rules = RULES
+        .iter()
+        .map(|(selector, rule, shades)| format!("{selector}{{{}}}", rule.replace('@', shades[ground])));
+    let series = COLOURS.iter().map(|(_, class, shades)| {
+        let shade = shades[ground];
+        format!(".{class}{{fill:{shade}}}.plot path.{class}{{stroke:{shade}}}")
+    });
+    rules.chain(series).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::super::series::{Colour, Line, Point};
@@ -120,7 +156,6 @@ mod tests {
         let theirs = series("theirs", Colour::Blue, &[[1.0, 0.3]]);
         let panel = |title: &str, series| Panel { title: title.to_owned(), series };
         let chart = Chart {
-            axis: "seconds",
             panels: vec![
                 panel("a: FLIP", vec![ours(), theirs]),
                 panel("b: FLIP", vec![ours()]),
@@ -133,7 +168,16 @@ mod tests {
         // Two points of each front are joined; the beaten one and the single one are not.
         assert_eq!((svg.matches("class=\"line").count(), svg.matches("<circle").count()), (2, 2 + 4 + 3));
         assert_eq!(svg.matches("class=\"minor\"").count(), 2);
-        assert!(chart.description().contains("b: FLIP; c over seconds: ours & co, theirs"));
+        assert!(chart.description().contains("b: FLIP; c over processor seconds: ours & co, theirs"));
         assert_eq!(lines("aa bb cccccc d", 5), ["aa bb", "cccccc", "d"]);
+    }
+
+    #[test]
+    fn files_of_their_own_name_their_format_and_both_themes() {
+        let svg = standalone(1.0, 1.0, "<text>a &gt; b</text>");
+        assert!(svg.starts_with("<svg class=\"plot\" viewBox=\"0 0 1 1\"") && svg.contains("xmlns="));
+        assert!(svg.contains("prefers-color-scheme:dark") && svg.ends_with("<text>a &gt; b</text></svg>\n"));
+        // Only the query of the dark theme has the sign.
+        assert_eq!(svg.matches('@').count(), 1, "{svg}");
     }
 }

@@ -2,11 +2,9 @@
 //!
 //! Colours are classes of a style sheet, which has a light and a dark palette.
 
-mod axis;
 mod chart;
 mod panel;
 mod series;
-mod style;
 
 pub use chart::{Chart, Panel};
-pub use series::{COLOURS, Colour, Line, Point, Series};
+pub use series::{Colour, Line, Point, Series, front};

@@ -2,9 +2,9 @@
 
 use super::cell::figure;
 use super::reference::Noise;
-use super::{Answer, Axis, Column, Curve, Figure, Question, Shot};
+use super::{Answer, Candidate, Column, Curve, Figure, Question, Shot};
 use crate::document::{Document, Grid};
-use crate::plot::{Chart, Panel, Point, Series};
+use crate::plot::{Panel, Point, Series};
 use serde_json::{Value, json};
 
 impl Answer {
@@ -45,8 +45,7 @@ impl Answer {
         let Question { table, brief, names, .. } = self.question;
         let is_brief = |column: &&Column<Shot>| brief.contains(&column.head);
         let texts = table.iter().filter(|column| !column.head.is_empty()).take(names).filter(is_brief);
-        let columns: Vec<&Column<Shot>> = table.iter().filter(is_brief).collect();
-        document.grid(&self.grid_in(&columns, texts.count(), main));
+        document.grid(&self.grid_of(table.iter().filter(is_brief), texts.count(), main));
         let grid = self.grid(&self.shots);
         document.fold("All images and all columns", |document| {
             document.text(&self.about());
@@ -54,55 +53,30 @@ impl Answer {
         });
     }
 
-    /// Adds a chart with the name of its file.
-    pub fn draw(&self, document: &mut Document, name: &str, panels: Vec<Panel>) {
-        document.plot(name, &Chart { axis: self.axis(), panels, caption: Vec::new() });
-    }
-
     /// Returns the figures as panels of a chart.
     pub fn panels(&self) -> Vec<Panel> {
-        let panel = |figure: &Figure| Panel {
-            title: format!("{}: {}", self.scene, figure.name),
-            series: self.series(figure),
+        let panel = |figure: &Figure| {
+            let series = |curve: &Curve| Series {
+                name: curve.name.to_owned(),
+                colour: curve.colour,
+                line: curve.line,
+                points: self.points(curve.holds, figure.error),
+            };
+            let title = format!("{}: {}", self.scene, figure.name);
+            Panel { title, series: figure.curves.iter().map(series).collect() }
         };
         self.question.figures.iter().map(panel).collect()
     }
 
-    /// Returns the curves of a figure.
-    fn series(&self, figure: &Figure) -> Vec<Series> {
-        let series = |curve: &Curve| Series {
-            name: curve.name.to_owned(),
-            colour: curve.colour,
-            line: curve.line,
-            points: self.points(self.shots.iter().filter(|s| (curve.holds)(&s.candidate)), figure.error),
-        };
-        figure.curves.iter().map(series).collect()
-    }
-
-    /// Returns points over the question's axis, in its order.
-    pub fn points<'s>(
-        &self,
-        shots: impl IntoIterator<Item = &'s Shot>,
-        at: impl Fn(&Shot) -> Option<f64>,
-    ) -> Vec<Point> {
+    /// Returns points over their seconds.
+    fn points(&self, holds: fn(&Candidate) -> bool, error: fn(&Shot) -> Option<f64>) -> Vec<Point> {
         let point = |shot: &Shot| {
-            let (x, name) = match self.question.axis {
-                Axis::Seconds => (shot.seconds(), shot.candidate.label.clone()),
-                Axis::Value(_) => (shot.value, String::new()),
-            };
-            Some(Point { x, y: at(shot)?, name })
+            Some(Point { x: shot.seconds(), y: error(shot)?, name: shot.candidate.label.clone() })
         };
-        let mut points: Vec<Point> = shots.into_iter().filter_map(point).collect();
+        let shots = self.shots.iter().filter(|shot| holds(&shot.candidate));
+        let mut points: Vec<Point> = shots.filter_map(point).collect();
         points.sort_by(|a, b| a.x.total_cmp(&b.x));
         points
-    }
-
-    /// Returns the name of the horizontal axis.
-    pub fn axis(&self) -> &'static str {
-        match self.question.axis {
-            Axis::Seconds => "processor seconds",
-            Axis::Value(name) => name,
-        }
     }
 
     /// Returns an object per record.
@@ -114,27 +88,19 @@ impl Answer {
         records.iter().map(object).collect()
     }
 
-    /// Returns a row per record; the first `names` columns hold text.
+    /// Returns a row per record with some columns, of which the first `names` hold text. Columns without any text are
+    /// left out.
     pub fn grid_of<'r, R: 'r>(
         &self,
-        columns: &[Column<R>],
-        names: usize,
-        records: impl IntoIterator<Item = &'r R>,
-    ) -> Grid {
-        self.grid_in(&columns.iter().collect::<Vec<_>>(), names, records)
-    }
-
-    /// Returns a row per record with chosen columns. Columns without any text are left out.
-    fn grid_in<'r, R: 'r>(
-        &self,
-        columns: &[&Column<R>],
+        columns: impl IntoIterator<Item = &'r Column<R>>,
         names: usize,
         records: impl IntoIterator<Item = &'r R>,
     ) -> Grid {
         let records: Vec<&R> = records.into_iter().collect();
         let text = |column: &Column<R>, record: &R| (column.cell)(self, record).text;
         let is_empty = |column: &Column<R>| records.iter().all(|record| text(column, record).is_empty());
-        let shown: Vec<_> = columns.iter().copied().filter(|c| !c.head.is_empty() && !is_empty(c)).collect();
+        let shown: Vec<_> =
+            columns.into_iter().filter(|column| !column.head.is_empty() && !is_empty(column)).collect();
         let row = |record: &&R| shown.iter().map(|column| text(column, record)).collect();
         let heads: Vec<&str> = shown.iter().map(|column| column.head).collect();
         Grid::new(names, &heads, records.iter().map(row).collect())

@@ -3,19 +3,14 @@
 use super::{
     Answer, Candidate, Errors, Question, Reference, Run, Shot, Study, StudyError, Subject, Truth, eye_samples,
 };
-use std::rc::Rc;
 use transport::paths::Estimand;
 
 /// References and other images of a scene.
-#[derive(Default)]
 struct Standards {
-    pixels: Option<Rc<Reference>>,
+    pixels: Option<Reference>,
     samples: Option<Reference>,
     others: Vec<Run>,
 }
-
-/// First of the seeds over which errors are averaged.
-const FIRST_SEED: u32 = 1000;
 
 impl Study<'_> {
     /// Renders and judges the images of a question, scene by scene.
@@ -38,20 +33,13 @@ impl Study<'_> {
     }
 
     fn standards(&self, subject: &Subject, question: &Question) -> Result<Standards, StudyError> {
-        let mut standards = Standards::default();
-        match question.error {
-            Truth::None => {}
-            Truth::Pixels => standards.pixels = Some(Rc::new(self.reference(subject, Estimand::Pixels)?)),
-            Truth::PixelsAndEyeSamples => {
-                standards.pixels = Some(Rc::new(self.reference(subject, Estimand::Pixels)?));
-                standards.samples = Some(self.reference(subject, eye_samples())?);
-            }
-            Truth::Given(reference) => standards.pixels = Some(Rc::clone(reference)),
-        }
-        for other in question.others {
-            standards.others.push(self.run(subject, other)?);
-        }
-        Ok(standards)
+        let reference =
+            |is_wanted: bool, estimand| is_wanted.then(|| self.reference(subject, estimand)).transpose();
+        Ok(Standards {
+            pixels: reference(question.error != Truth::None, Estimand::Pixels)?,
+            samples: reference(question.error == Truth::PixelsAndEyeSamples, eye_samples())?,
+            others: question.others.iter().map(|other| self.run(subject, other)).collect::<Result<_, _>>()?,
+        })
     }
 
     fn shot(
@@ -61,31 +49,20 @@ impl Study<'_> {
         question: &Question,
         standards: &Standards,
     ) -> Result<Shot, StudyError> {
-        let (mut errors, mut nonfinite) = (Vec::new(), 0);
-        let mut last = None;
-        for seed in 0..candidate.seeds.max(1) {
-            let mut run = match candidate.seeds {
-                0 => self.run(subject, candidate)?,
-                _ => self.run_seed(subject, candidate, FIRST_SEED + seed)?,
-            };
-            let factor = (question.brightness)(subject.value);
-            run.color.pixels.iter_mut().for_each(|p| *p = (p.as_dvec3() / factor).as_vec3());
-            let reference = standards.pixels.as_ref();
-            errors.push(reference.map_or(Ok(Errors::UNKNOWN), |r| Errors::against(&run.color, r))?);
-            nonfinite += run.counted.nonfinite;
-            last = Some(run);
-        }
-        let Run { color, counted } = last.ok_or(StudyError::Interrupted)?;
-        let errors = Errors::mean(&errors);
-        let samples = standards.samples.as_ref().filter(|_| candidate.method.estimand() == eye_samples());
+        let Run { color, counted } = self.run(subject, candidate)?;
+        let against = |reference: &Option<Reference>| {
+            reference.as_ref().map(|reference| Errors::against(&color, reference)).transpose()
+        };
+        let errors = against(&standards.pixels)?.unwrap_or(Errors::UNKNOWN);
         let light = match candidate.whole_pixels() {
             true => Some(errors),
-            false => samples.map(|reference| Errors::against(&color, reference)).transpose()?,
+            false if candidate.method.estimand() == eye_samples() => against(&standards.samples)?,
+            false => None,
         };
         let other = (question.compared_with)(candidate).and_then(|index| standards.others.get(index));
         let compared = other.map(|other| Errors::between(&color, &other.color)).transpose()?;
         let candidate = candidate.clone();
         let (value, load) = (subject.value, subject.load);
-        Ok(Shot { candidate, value, load, counted, errors, light, compared, nonfinite })
+        Ok(Shot { candidate, value, load, counted, errors, light, compared })
     }
 }

@@ -20,8 +20,6 @@ pub struct Candidate {
     pub denoise: bool,
     /// Number of frames of a walk-through whose last frame is the image; `None` for a single image.
     pub walk: Option<usize>,
-    /// Number of seeds over which errors are averaged; 0 for the method's own seed.
-    pub seeds: u32,
     /// Options for the settings that differ from the defaults.
     pub options: String,
     /// Group that the image belongs to.
@@ -60,7 +58,6 @@ impl Candidate {
             denoise: method.leaves_noise(),
             method,
             walk: None,
-            seeds: 0,
             options: String::new(),
             group: Group::Default,
             main: true,
@@ -111,11 +108,6 @@ pub fn qualities() -> impl Iterator<Item = Candidate> {
 pub fn eye_samples() -> Estimand {
     let vpl::Settings { spp, seed, .. } = vpl::Settings::reconstruction();
     Estimand::EyeSamples { spp, seed }
-}
-
-/// Returns lightcuts on the eye samples, virtual lights and cuts of reconstruction cuts.
-pub fn lightcuts_on_eye_samples() -> vpl::Settings {
-    vpl::Settings::lightcuts()
 }
 
 /// Returns the photon cache on the eye samples of reconstruction cuts.

@@ -41,11 +41,6 @@ impl Cell {
     pub fn seconds(value: f64) -> Cell {
         Cell { exact: json!(value), text: seconds(value) }
     }
-
-    /// Creates a time or ratio that may only be bounded.
-    pub fn bounded(value: Option<Bounded>) -> Cell {
-        Cell { exact: json!(value), text: bounded(value) }
-    }
 }
 
 /// Formats a value with three significant digits.

@@ -13,15 +13,9 @@ pub struct Counted {
     pub records: Option<[f64; 2]>,
     /// Number of records that a frame of a walk-through adds.
     pub new_records: f64,
-    /// Mean ratio of the long to the short radius of footprints, direct and indirect.
-    pub anisotropy: [Option<f64>; 2],
-    /// Mean radius of footprints over the distance of the geometry around, direct and indirect.
-    pub accuracy: [Option<f64>; 2],
     /// Mean number of clusters in a cut of indirect records, or of rays of their gathering; without records, of
     /// clusters in cuts of eye samples.
     pub cut: Option<f64>,
-    /// Number of values that were not finite.
-    pub nonfinite: u64,
     /// Work of the image; none for a walk-through.
     pub work: Work,
     /// Closest-hit rays and shadow rays of the eye pass.
@@ -29,16 +23,14 @@ pub struct Counted {
 }
 
 impl Counted {
-    /// Takes the statistics of a render, and the number of its values that were not finite.
-    pub fn new(stats: &Stats, nonfinite: u64) -> Counted {
+    /// Takes the statistics of a render.
+    pub fn new(stats: &Stats) -> Counted {
         let counter = |name: &str| match stats.get(name)? {
             Counter::Count(n) => Some(n as f64),
             Counter::Sum(x) => Some(x),
             Counter::Distribution(_) => None,
         };
-        let layers =
-            |what: &str| ["direct", "indirect"].map(|layer| counter(&format!("Cache/{what}, {layer}")));
-        let [direct, indirect] = layers("records");
+        let [direct, indirect] = ["Cache/records, direct", "Cache/records, indirect"].map(counter);
         let records = direct.zip(indirect).map(|(direct, indirect)| [direct, indirect]);
         let cut = if records.is_some() { "Cache/cut or rays, indirect" } else { "Lightcut/mean cut" };
         Counted {
@@ -46,10 +38,7 @@ impl Counted {
                 .map(|stage| stats.stage(stage).map(|time| [time.cpu_seconds, time.wall_seconds])),
             records,
             new_records: counter("Walk/new records").unwrap_or(0.0),
-            anisotropy: layers("anisotropy"),
-            accuracy: layers("accuracy"),
             cut: counter(cut),
-            nonfinite,
             work: Work::default(),
             eye_rays: ["Eye/closest-hit rays", "Eye/shadow rays"].into_iter().filter_map(counter).sum(),
         }

@@ -1,6 +1,6 @@
 //! Time that a method takes to an error, within the range of its measured images.
 
-use crate::front::front;
+use crate::plot::front;
 use serde::Serialize;
 use std::fmt;
 

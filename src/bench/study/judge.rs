@@ -59,20 +59,6 @@ impl Errors {
         Ok(Errors { psnr, rel_mse: sum / counted.max(1) as f64, ..errors })
     }
 
-    /// Returns the means of the measures that have one: PSNR has none.
-    pub fn mean(all: &[Errors]) -> Errors {
-        if let [errors] = all {
-            return *errors;
-        }
-        let mean = |of: fn(&Errors) -> f64| all.iter().map(|e| of(e) / all.len() as f64).sum();
-        Errors {
-            psnr: None,
-            rel_mse: mean(|e| e.rel_mse),
-            flip: mean(|e| e.flip),
-            brightness: mean(|e| e.brightness),
-        }
-    }
-
     /// Returns the root mean square error of the displayed image; 0 without a PSNR.
     pub fn displayed_rmse(&self) -> f64 {
         self.psnr.map_or(0.0, rmse_of_psnr)

@@ -3,19 +3,14 @@
 use super::{Candidate, Cell, Counted, Errors, Reference};
 use crate::plot::{Colour, Line};
 use base::stats::Stage;
-use std::rc::Rc;
 
-/// A question: which images, along which axis, by which errors, in which table and figures.
+/// A question: which images, by which errors, in which table and figures.
 #[derive(Clone, Copy)]
 pub struct Question<'q> {
     /// Images of each scene, in the order of the table.
     pub images: &'q [Candidate],
-    /// Quantity along which the figures are drawn.
-    pub axis: Axis,
     /// References that errors are measured against.
-    pub error: Truth<'q>,
-    /// Returns the factor on the light of a scene by which its images are divided, from the scene's value.
-    pub brightness: fn(f64) -> f64,
+    pub error: Truth,
     /// Other images that images are compared with.
     pub others: &'q [Candidate],
     /// Returns the index of the other image that an image is compared with.
@@ -33,9 +28,7 @@ impl Question<'_> {
     /// Default of all fields: no images, over seconds, with a reference of pixels.
     pub const PLAIN: Question<'static> = Question {
         images: &[],
-        axis: Axis::Seconds,
         error: Truth::Pixels,
-        brightness: |_| 1.0,
         others: &[],
         compared_with: |_| None,
         table: &[],
@@ -45,26 +38,15 @@ impl Question<'_> {
     };
 }
 
-/// Quantity along which images differ.
-#[derive(Clone, Copy)]
-pub enum Axis {
-    /// Processor seconds of the images of one scene.
-    Seconds,
-    /// Value of a named quantity, which differs between scenes.
-    Value(&'static str),
-}
-
 /// References that errors are measured against.
-#[derive(Clone, Copy)]
-pub enum Truth<'q> {
+#[derive(Clone, Copy, PartialEq)]
+pub enum Truth {
     /// No reference: only times are measured.
     None,
     /// Reference of the scene's pixels.
     Pixels,
     /// References of the scene's pixels, and of the eye samples of methods that keep these.
     PixelsAndEyeSamples,
-    /// Reference of another scene with the same image but for a factor.
-    Given(&'q Rc<Reference>),
 }
 
 /// An image of a question with its time and errors.
@@ -77,15 +59,13 @@ pub struct Shot {
     pub load: Option<f64>,
     /// Counters and times.
     pub counted: Counted,
-    /// Errors against the reference of pixels, averaged over seeds.
+    /// Errors against the reference of pixels.
     pub errors: Errors,
     /// Errors of light: against the reference of pixels for methods that estimate whole pixels, and of eye samples for
     /// methods that keep these. `None` without such a reference.
     pub light: Option<Errors>,
     /// Errors against the other image that this one is compared with.
     pub compared: Option<Errors>,
-    /// Number of values that were not finite, over all seeds.
-    pub nonfinite: u64,
 }
 
 /// A column of a table of records: its name for programs, its name for people, and its figure.
@@ -105,7 +85,7 @@ impl<R> Column<R> {
     }
 }
 
-/// A figure: an error of the images over the question's axis, in a curve per group of images.
+/// A figure: an error of the images over their seconds, in a curve per group of images.
 pub struct Figure {
     /// Name of its vertical axis.
     pub name: &'static str,
@@ -127,6 +107,13 @@ pub struct Curve {
     pub holds: fn(&Candidate) -> bool,
 }
 
+impl Curve {
+    /// Declares a curve.
+    pub const fn of(name: &'static str, colour: Colour, line: Line, holds: fn(&Candidate) -> bool) -> Curve {
+        Curve { name, colour, line, holds }
+    }
+}
+
 /// Judged images of a question.
 pub struct Answer {
     /// The question, without its images.
@@ -136,7 +123,7 @@ pub struct Answer {
     /// Number of its triangles.
     pub triangles: usize,
     /// Reference that judges pixels.
-    pub reference: Option<Rc<Reference>>,
+    pub reference: Option<Reference>,
     /// Reference that judges eye samples.
     pub light_reference: Option<Reference>,
     /// Images, scene by scene.
@@ -146,9 +133,9 @@ pub struct Answer {
 impl Answer {
     /// Creates the answer to a question before its images are rendered.
     pub fn to(question: &Question) -> Answer {
-        let Question { axis, table, names, brief, figures, .. } = *question;
+        let Question { table, names, brief, figures, .. } = *question;
         Answer {
-            question: Question { axis, table, names, brief, figures, ..Question::PLAIN },
+            question: Question { table, names, brief, figures, ..Question::PLAIN },
             scene: String::new(),
             triangles: 0,
             reference: None,

@@ -44,7 +44,7 @@ impl Study<'_> {
         let views = candidate.walk.and_then(|frames| subject.walk(frames));
         let run = match views {
             Some(views) => self.walk(subject, candidate, &views)?,
-            None => self.render(subject, candidate, self.plan.repeats)?,
+            None => self.render(subject, candidate)?,
         };
         let unit = if candidate.walk.is_some() { ", per frame" } else { "" };
         let seconds = run.counted.seconds(&Stage::ALL);
@@ -52,13 +52,6 @@ impl Study<'_> {
         let facts = json!(run.counted);
         self.store.save(&name, &key, &Stored { color: run.color.clone(), layers: Vec::new(), facts })?;
         Ok(run)
-    }
-
-    /// Renders an image with a seed of its own, once and without storing it.
-    pub fn run_seed(&self, subject: &Subject, candidate: &Candidate, seed: u32) -> Result<Run, StudyError> {
-        let mut candidate = candidate.clone();
-        candidate.method.set_seed(seed);
-        self.render(subject, &candidate, 1)
     }
 
     /// Renders a walk-through over `views` once. Returns its last image with mean times and numbers of new records.
@@ -72,7 +65,7 @@ impl Study<'_> {
             // Other errors are of settings, which studies choose, and of memory.
             let frame = walk.frame(view, self.control).ok().filter(|frame| frame.complete);
             let frame = frame.ok_or(StudyError::Interrupted)?;
-            frames.push(Counted::new(&frame.stats, 0));
+            frames.push(Counted::new(&frame.stats));
             last = Some(frame.film.color);
         }
         let mut counted = frames.last().cloned().unwrap_or_default();
@@ -81,12 +74,12 @@ impl Study<'_> {
     }
 
     /// Renders several times and returns the run that took the least processor time.
-    fn render(&self, subject: &Subject, candidate: &Candidate, repeats: usize) -> Result<Run, StudyError> {
+    fn render(&self, subject: &Subject, candidate: &Candidate) -> Result<Run, StudyError> {
         let mut best: Option<Run> = None;
-        for _ in 0..repeats.max(1) {
+        for _ in 0..self.plan.repeats.max(1) {
             let mut output = self.render_once(subject, candidate)?;
-            let nonfinite = output.nonfinite + output.color.remove_nonfinite();
-            let counted = Counted { work: output.work, ..Counted::new(&output.stats, nonfinite) };
+            output.color.remove_nonfinite();
+            let counted = Counted { work: output.work, ..Counted::new(&output.stats) };
             let run = Run { color: output.color, counted };
             let seconds = |run: &Run| run.counted.seconds(&Stage::ALL);
             if best.as_ref().is_none_or(|best| seconds(&run) < seconds(best)) {

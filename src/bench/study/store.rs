@@ -6,6 +6,7 @@
 
 use super::StudyError;
 use base::film::{ExrFile, Film, Image, Layer, write_exr};
+use readers::fnv1a;
 use serde_json::Value;
 use std::fmt::{self, Write};
 use std::hash::{DefaultHasher, Hasher};
@@ -75,19 +76,11 @@ impl Store {
 pub fn program() -> String {
     static PROGRAM: OnceLock<String> = OnceLock::new();
     let read = || std::env::current_exe().and_then(std::fs::read);
-    let hash = |bytes: Vec<u8>| format!("{:016x}", hash(|text| text.0.write(&bytes)));
+    let hash = |bytes: Vec<u8>| format!("{:016x}", fnv1a(&bytes));
     PROGRAM.get_or_init(|| read().map_or_else(|_| env!("CARGO_PKG_VERSION").to_owned(), hash)).clone()
 }
 
-/// Returns the hash of a value's debug text, which holds every field and writes numbers exactly.
-pub(super) fn hash_debug(value: &dyn fmt::Debug) -> u64 {
-    hash(|text| {
-        // Hashing cannot fail.
-        let _ = write!(text, "{value:?}");
-    })
-}
-
-/// Hash of text in pieces.
+/// Hash of a text in pieces.
 #[derive(Default)]
 struct HashedText(DefaultHasher);
 
@@ -98,9 +91,11 @@ impl Write for HashedText {
     }
 }
 
-fn hash(write: impl FnOnce(&mut HashedText)) -> u64 {
+/// Returns the hash of a value's debug text, which holds every field and writes numbers exactly.
+pub(super) fn hash_debug(value: &dyn fmt::Debug) -> u64 {
     let mut text = HashedText::default();
-    write(&mut text);
+    // Hashing cannot fail.
+    let _ = write!(text, "{value:?}");
     text.0.finish()
 }
 

@@ -1,8 +1,6 @@
 //! Rows of the table. Settings are the methods' defaults, with the exceptions stated here.
 
-use crate::study::{
-    Candidate, Group, Study, Subject, denoised_paths, lightcuts_on_eye_samples, photons_on_eye_samples,
-};
+use crate::study::{Candidate, Group, Study, Subject, denoised_paths, photons_on_eye_samples};
 use render::method::{Method, vpl};
 use transport::radiance_cache::{DirectBy, Footprints, FoundBy};
 
@@ -46,7 +44,7 @@ pub fn paper(label: &str) -> Option<&'static str> {
 /// and lightcuts also take their virtual lights and cuts.
 pub fn entries(study: &Study, subject: &Subject) -> Vec<Candidate> {
     let reconstruction = vpl::Settings::reconstruction();
-    let (cuts, photons) = (lightcuts_on_eye_samples(), photons_on_eye_samples());
+    let (cuts, photons) = (vpl::Settings::lightcuts(), photons_on_eye_samples());
     let unshared = vpl::Settings { share: false, ..cuts };
     let of = |group, candidate| Candidate { group, ..candidate };
     let mut entries = vec![Candidate::new("default", Method::default())];
@@ -85,7 +83,7 @@ pub fn entries(study: &Study, subject: &Subject) -> Vec<Candidate> {
 
 /// Returns lightcuts per pixel, which methods that keep eye samples are compared with.
 pub fn lightcuts() -> Candidate {
-    let method = Method::Vpl(lightcuts_on_eye_samples());
+    let method = Method::Vpl(vpl::Settings::lightcuts());
     Candidate { group: Group::Lightcuts, ..Candidate::new("lightcuts", method) }
 }
 

@@ -28,9 +28,9 @@ use super::document::Grid;
 use super::plot::{Chart, Colour, Line};
 use super::study::{
     Answer, Bounded, Candidate, Cell, Column, Curve, Figure, Group, Question, Shot, Study, StudyError, Truth,
-    bounded, optional, time_to,
+    bounded, time_to,
 };
-use super::{Benchmark, Kind, Results, Scenes};
+use super::{Benchmark, Kind, Results};
 use base::stats::Stage;
 use entries::{OPPONENTS, entries, lightcuts};
 use paper::{CLAIMS, LEGEND, SAVED_BY_ANISOTROPY};
@@ -41,11 +41,7 @@ use std::path::PathBuf;
 pub(super) const BENCHMARK: Benchmark = Benchmark {
     name: "table1",
     about: "The paper's Table 1: every method on whole scenes, times and errors",
-    kind: Kind::Study {
-        scenes: Scenes::Files(&["knot", "nave", "kitchen", "hall", "apartment"]),
-        pixels: [512, 512],
-        run,
-    },
+    kind: Kind::Study { scenes: &["knot", "nave", "kitchen", "hall", "apartment"], pixels: [512, 512], run },
 };
 
 /// Caption of the chart.
@@ -88,8 +84,6 @@ const QUESTION: Question = Question {
         Column::new("", "direct %", |_, s| {
             Cell::text(whole(s.counted.records.map(|[d, i]| 100.0 * d / (d + i).max(1.0))))
         }),
-        Column::new("anisotropy", "anisotropy", |_, s| pair(s.counted.anisotropy)),
-        Column::new("accuracy", "a", |_, s| pair(s.counted.accuracy)),
         Column::new("cut", "cut", |_, s| Cell::optional(s.counted.cut)),
         Column::new("eye", "", |_, s| time(s, &[Stage::EyePass])),
         Column::new("light_pass", "T_light", |_, s| time(s, &[Stage::LightPass, Stage::Tree])),
@@ -114,17 +108,11 @@ const QUESTION: Question = Question {
         Column::new("", "FLIP to LC", |_, s| Cell::optional(s.compared.map(|e| e.flip))),
         Column::new("versus", "", |a, s| Cell::exact([0, 1, 2].map(|o| versus(a, s, o)))),
         Column::new("", "speed to LC", |a, s| speed(a, s, 0)),
-        Column::new("", "at equal FLIP", |a, s| at_equal(a, s, 0, |v| v.at_equal_flip)),
-        Column::new("", "at equal PSNR", |a, s| at_equal(a, s, 0, |v| v.at_equal_psnr)),
-        Column::new("", "at equal light", |a, s| at_equal(a, s, 0, |v| v.at_equal_light)),
+        Column::new("", "at equal FLIP / PSNR / light", |a, s| at_equal(a, s, 0)),
         Column::new("", "speed to PM", |a, s| speed(a, s, 1)),
-        Column::new("", "at equal FLIP", |a, s| at_equal(a, s, 1, |v| v.at_equal_flip)),
-        Column::new("", "at equal PSNR", |a, s| at_equal(a, s, 1, |v| v.at_equal_psnr)),
-        Column::new("", "at equal light", |a, s| at_equal(a, s, 1, |v| v.at_equal_light)),
+        Column::new("", "at equal FLIP / PSNR / light", |a, s| at_equal(a, s, 1)),
         Column::new("", "speed to path", |a, s| speed(a, s, 2)),
-        Column::new("", "at equal FLIP", |a, s| at_equal(a, s, 2, |v| v.at_equal_flip)),
-        Column::new("", "at equal PSNR", |a, s| at_equal(a, s, 2, |v| v.at_equal_psnr)),
-        Column::new("", "at equal light", |a, s| at_equal(a, s, 2, |v| v.at_equal_light)),
+        Column::new("", "at equal FLIP / PSNR / light", |a, s| at_equal(a, s, 2)),
     ],
     figures: &[
         Figure { name: "FLIP", error: |s| Some(s.errors.flip), curves: CURVES },
@@ -139,26 +127,11 @@ const QUESTION: Question = Question {
 
 /// Other methods as curves, ours and the paper's as single points.
 const CURVES: &[Curve] = &[
-    Curve {
-        name: "lightcuts",
-        colour: Colour::Orange,
-        line: Line::Front,
-        holds: |c| c.group == Group::Lightcuts,
-    },
-    Curve {
-        name: "photon-cache",
-        colour: Colour::Olive,
-        line: Line::Front,
-        holds: |c| c.group == Group::PhotonCache,
-    },
-    Curve {
-        name: "path --denoise",
-        colour: Colour::Green,
-        line: Line::Front,
-        holds: |c| c.group == Group::DenoisedPath,
-    },
-    Curve { name: "", colour: Colour::Red, line: Line::None, holds: |c| c.group == Group::Default },
-    Curve { name: "", colour: Colour::Orange, line: Line::None, holds: |c| c.group == Group::Unshared },
+    Curve::of("lightcuts", Colour::Orange, Line::Front, |c| c.group == Group::Lightcuts),
+    Curve::of("photon-cache", Colour::Olive, Line::Front, |c| c.group == Group::PhotonCache),
+    Curve::of("path --denoise", Colour::Green, Line::Front, |c| c.group == Group::DenoisedPath),
+    Curve::of("", Colour::Red, Line::None, |c| c.group == Group::Default),
+    Curve::of("", Colour::Orange, Line::None, |c| c.group == Group::Unshared),
 ];
 
 fn time(shot: &Shot, stages: &[Stage]) -> Cell {
@@ -168,15 +141,6 @@ fn time(shot: &Shot, stages: &[Stage]) -> Cell {
 /// Formats an integer; a dash for `None`.
 fn whole(value: Option<f64>) -> String {
     value.map_or("-".to_owned(), |n| format!("{n:.0}"))
-}
-
-/// Returns figures of direct and indirect light.
-fn pair(figures: [Option<f64>; 2]) -> Cell {
-    let text = match figures {
-        [None, None] => "-".to_owned(),
-        [direct, indirect] => format!("{} / {}", optional(direct), optional(indirect)),
-    };
-    Cell { exact: json!(figures), text }
 }
 
 /// Ratio of another method's time to the time of a row.
@@ -192,6 +156,13 @@ struct Versus {
     at_equal_psnr: Option<Bounded>,
     /// Ratio at equal relMSE of light.
     at_equal_light: Option<Bounded>,
+}
+
+impl Versus {
+    /// Returns the ratios at equal FLIP, PSNR and error of light.
+    fn at_equal(&self) -> String {
+        [self.at_equal_flip, self.at_equal_psnr, self.at_equal_light].map(bounded).join(" / ")
+    }
 }
 
 /// Compares a row with an opponent: with its main row, and with the curve of all its rows.
@@ -218,8 +189,8 @@ fn speed(answer: &Answer, shot: &Shot, opponent: usize) -> Cell {
     Cell::text(versus.map_or("-".to_owned(), |versus| format!("{:.2}", versus.speed)))
 }
 
-fn at_equal(answer: &Answer, shot: &Shot, opponent: usize, of: fn(Versus) -> Option<Bounded>) -> Cell {
-    Cell::bounded(versus(answer, shot, opponent).and_then(of))
+fn at_equal(answer: &Answer, shot: &Shot, opponent: usize) -> Cell {
+    Cell::text(versus(answer, shot, opponent).map_or("-".to_owned(), |versus| versus.at_equal()))
 }
 
 fn run(study: &Study, scenes: &[PathBuf]) -> Result<Results, StudyError> {
@@ -232,7 +203,7 @@ fn run(study: &Study, scenes: &[PathBuf]) -> Result<Results, StudyError> {
     }
     let mut results = Results::new("Table 1", study.facts(), LEGEND);
     let panels = answers.iter().flat_map(Answer::panels).collect();
-    let chart = Chart { axis: "processor seconds", panels, caption: vec![CHART.to_owned()] };
+    let chart = Chart { panels, caption: vec![CHART.to_owned()] };
     let document = &mut results.document;
     document.plot("table1", &chart);
     document.heading(2, "Beside the paper");
@@ -267,10 +238,7 @@ fn claims(answers: &[Answer]) -> Vec<Vec<String>> {
             let speed = other.seconds() / own.seconds().max(f64::MIN_POSITIVE);
             let opponent = OPPONENTS.iter().position(|(_, label)| *label == slower);
             Some(match opponent.and_then(|opponent| versus(answer, own, opponent)) {
-                Some(v) => {
-                    let equal = [v.at_equal_flip, v.at_equal_psnr, v.at_equal_light].map(bounded);
-                    format!("{speed:.2} ({})", equal.join(" / "))
-                }
+                Some(versus) => format!("{speed:.2} ({})", versus.at_equal()),
                 None => format!("{speed:.2}"),
             })
         };

@@ -5,9 +5,7 @@
 
 /// Explanation of the columns.
 pub const LEGEND: &str = "Times are processor seconds over all threads. N_c: records; direct %: share of them that hold \
-    direct light; anisotropy: long over short radius of footprints, direct / indirect; a: their radius over the distance \
-    of what casts light and shadow; cut: clusters; T_light: light pass and trees; T_f: records and cuts of eye samples; \
-    T_cache: splatting and adaptation; total: all stages, including denoising and the eye pass, in which the default \
+    direct light; cut: clusters; T_light: light pass and trees; T_f: records and cuts of eye samples; T_cache: splatting and adaptation; total: all stages, including denoising and the eye pass, in which the default \
     finds direct light. FLIP includes the noise of the reference. PSNR and relMSE are without it, relMSE also without the \
     worst pixel of a thousand. Brightness below 1 mostly shows clamping. The default and paths are denoised and estimate \
     the whole pixel; the other rows keep four eye samples per pixel, whose aliasing counts in FLIP, PSNR and relMSE. \

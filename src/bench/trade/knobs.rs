@@ -68,7 +68,12 @@ impl Knob {
         let mut method = self.base;
         self.turn(level, &mut method);
         let label = self.label(level);
-        Candidate { options: label.clone(), group: Group::Sweep, ..Candidate::new(label, method) }
+        Candidate {
+            options: label.clone(),
+            group: Group::Sweep,
+            main: false,
+            ..Candidate::new(label, method)
+        }
     }
 
     /// Sets a level.

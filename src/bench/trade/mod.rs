@@ -13,19 +13,19 @@
 //!
 //! The settings of `--quality` and denoised paths are shown beside them.
 
-mod front;
 mod knobs;
-mod tell;
 
+use super::document::Grid;
+use super::plot::{Chart, Colour, Line};
 use super::study::{
-    Candidate, Cell, Column, Group, Question, Study, StudyError, Truth, denoised_paths, eye_samples,
-    lightcuts_on_eye_samples, photons_on_eye_samples, qualities,
+    Answer, Candidate, Cell, Column, Curve, Figure, Group, Question, Shot, Study, StudyError, Truth,
+    denoised_paths, eye_samples, optional, photons_on_eye_samples, qualities, seconds,
 };
-use super::{Benchmark, Kind, Results, Scenes};
+use super::{Benchmark, Kind, Results};
 use base::setting::JudgedBy;
-use front::{ERRORS, error_of, is_on_front};
-use knobs::{Knob, knobs};
+use knobs::{Knob, Sweep, knobs};
 use render::method::{Method, vpl};
+use serde_json::json;
 use std::path::PathBuf;
 use transport::lightcut::CutSettings;
 use transport::paths::Estimand;
@@ -34,7 +34,7 @@ use transport::radiance_cache::FoundBy;
 pub(super) const BENCHMARK: Benchmark = Benchmark {
     name: "trade",
     about: "What each setting buys: error against time, and the Pareto front",
-    kind: Kind::Study { scenes: Scenes::Files(&[]), pixels: [256, 256], run },
+    kind: Kind::Study { scenes: &[], pixels: [256, 256], run },
 };
 
 /// Caption of the tables.
@@ -50,24 +50,46 @@ const LEGEND: &str = "Times are processor seconds over all threads. From the lim
 const QUESTION: Question = Question {
     error: Truth::PixelsAndEyeSamples,
     compared_with: limit_of,
-    names: 6,
+    names: 2,
     table: &[
+        Column::new("label", "point", |_, s| Cell::text(&s.candidate.label)),
+        Column::new("turned", "settings besides the defaults", |_, s| Cell::text(&s.candidate.options)),
         Column::new("seconds", "seconds", |_, s| Cell::seconds(s.seconds())),
         Column::new("limit", "from the limit", |_, s| Cell::optional(error_of(s, JudgedBy::Limit))),
         Column::new("light", "light error", |_, s| Cell::optional(error_of(s, JudgedBy::Light))),
         Column::new("flip", "FLIP", |_, s| Cell::figure(s.errors.flip)),
-        Column::new("label", "point", |_, s| Cell::text(&s.candidate.label)),
-        Column::new("turned", "settings besides the defaults", |_, s| Cell::text(&s.candidate.options)),
         Column::new("sort", "", |_, s| Cell::exact(s.candidate.group)),
         Column::new("settings", "", |_, s| Cell::exact(s.candidate.method.settings())),
         Column::new("denoised", "", |_, s| Cell::exact(s.counted.denoised())),
         Column::new("whole_pixels", "", |_, s| Cell::exact(s.candidate.whole_pixels())),
-        Column::new("fronts", "", |a, s| {
-            Cell::exact(ERRORS.into_iter().filter(|e| is_on_front(a, s, *e)).collect::<Vec<_>>())
-        }),
+    ],
+    brief: &["point", "seconds", "from the limit", "light error", "FLIP"],
+    figures: &[
+        Figure { name: "error from the limit", error: |s| error_of(s, JudgedBy::Limit), curves: CURVES },
+        Figure { name: "light error", error: |s| error_of(s, JudgedBy::Light), curves: CURVES },
+        Figure { name: "FLIP", error: |s| error_of(s, JudgedBy::Flip), curves: CURVES },
     ],
     ..Question::PLAIN
 };
+
+/// Groups of images, and the front of the images that estimate whole pixels. Later curves lie on top.
+const CURVES: &[Curve] = &[
+    Curve::of("one knob turned", Colour::Steel, Line::None, |c| c.group == Group::Sweep),
+    Curve::of("front", Colour::Olive, Line::Front, |c| c.whole_pixels() && !c.is_path()),
+    Curve::of("--quality", Colour::Purple, Line::None, |c| c.group == Group::Quality),
+    Curve::of("default", Colour::Red, Line::None, |c| c.group == Group::Default),
+    Curve::of("", Colour::Orange, Line::None, |c| c.group == Group::Other),
+    Curve::of("path --denoise", Colour::Green, Line::All, |c| c.group == Group::DenoisedPath),
+];
+
+/// Returns an error of an image.
+fn error_of(shot: &Shot, judged_by: JudgedBy) -> Option<f64> {
+    match judged_by {
+        JudgedBy::Limit => shot.compared.map(|errors| errors.rel_rmse()),
+        JudgedBy::Light => shot.light.map(|errors| errors.rel_rmse()),
+        JudgedBy::Flip => Some(shot.errors.flip),
+    }
+}
 
 fn run(study: &Study, scenes: &[PathBuf]) -> Result<Results, StudyError> {
     let mut knobs = knobs();
@@ -83,10 +105,38 @@ fn run(study: &Study, scenes: &[PathBuf]) -> Result<Results, StudyError> {
         images.extend(knobs.iter().flat_map(Knob::candidates));
         let question = Question { images: &images, others: &limits(), ..QUESTION };
         let answer = study.ask(question, [study.subject(path)])?;
-        let sweeps: Vec<_> = knobs.iter().map(|knob| knob.sweep(&answer)).collect();
-        tell::section(&mut results, &answer, &sweeps);
+        section(&mut results, &answer, &knobs);
     }
     Ok(results)
+}
+
+/// Adds the results of a scene.
+fn section(results: &mut Results, answer: &Answer, knobs: &[Knob]) {
+    let sweeps: Vec<Sweep> = knobs.iter().map(|knob| knob.sweep(answer)).collect();
+    results.push("scenes", answer.facts(), json!({ "points": answer.rows(), "sweeps": sweeps }));
+    let document = &mut results.document;
+    document.heading(2, &answer.scene);
+    let chart = Chart { panels: answer.panels(), caption: Vec::new() };
+    document.plot(&format!("{}-fronts", answer.scene), &chart);
+    answer.tell(document);
+    document.heading(3, "Knob by knob");
+    let heads = ["knob", "judged by", "coarse → fine: seconds, error"];
+    document.grid(&Grid::new(3, &heads, sweeps.iter().map(|sweep| row(answer, sweep)).collect()));
+}
+
+/// Returns the row of a sweep.
+fn row(answer: &Answer, sweep: &Sweep) -> Vec<String> {
+    let level = |(text, place): &(String, usize)| {
+        let shot = &answer.shots[*place];
+        format!("{text}: {}, {}", seconds(shot.seconds()), optional(error_of(shot, sweep.judged_by)))
+    };
+    let levels: Vec<String> = sweep.levels.iter().map(level).collect();
+    let judged_by = match sweep.judged_by {
+        JudgedBy::Limit => "error from the limit",
+        JudgedBy::Light => "light error",
+        JudgedBy::Flip => "FLIP",
+    };
+    vec![sweep.knob.clone(), judged_by.to_owned(), levels.join("; ")]
 }
 
 /// Returns the limits of cuts and records on the defaults' virtual lights, for the default's samples and for eye
@@ -100,7 +150,7 @@ fn limits() -> Vec<Candidate> {
     sampled.cache.indirect = FoundBy::Cuts;
     sampled.share = false;
     finer(&mut sampled.cut);
-    let mut kept = lightcuts_on_eye_samples();
+    let mut kept = vpl::Settings::lightcuts();
     finer(&mut kept.cut);
     [("limit", Method::Vpl(sampled)), ("limit of eye samples", Method::Vpl(kept))]
         .map(|(label, method)| Candidate::new(label, method))
@@ -125,7 +175,7 @@ fn has_default_samples(method: &Method) -> bool {
 fn others() -> [Candidate; 3] {
     [
         Method::Vpl(vpl::Settings::reconstruction()),
-        Method::Vpl(lightcuts_on_eye_samples()),
+        Method::Vpl(vpl::Settings::lightcuts()),
         Method::Vpl(photons_on_eye_samples()),
     ]
     .map(|method| Candidate { group: Group::Other, ..Candidate::new(method.name(), method) })

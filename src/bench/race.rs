@@ -4,16 +4,13 @@
 //! counts. Times are interpolated along the Pareto front of either. A chart shows all images, and figures of other
 //! programs from a file.
 
-mod chart;
-
-use self::chart::{FLIP, REL_MSE, chart};
 use super::document::Grid;
-use super::plot::{Colour, Line};
+use super::plot::{Chart, Colour, Line, Panel, Point, Series};
 use super::study::{
     Answer, Bounded, Candidate, Cell, Column, Curve, Errors, Figure, PeerFigure, Question, Study, StudyError,
     bounded, denoised_paths, optional, qualities, rmse_of_psnr, seconds, time_to,
 };
-use super::{Benchmark, Kind, Results, Scenes};
+use super::{Benchmark, Kind, Results};
 use render::method::Method;
 use serde::Serialize;
 use serde_json::json;
@@ -23,7 +20,7 @@ pub(super) const BENCHMARK: Benchmark = Benchmark {
     name: "race",
     about: "Error over time: cache, denoised paths and other programs",
     kind: Kind::Study {
-        scenes: Scenes::Files(&["cornell", "knot", "nave", "kitchen", "apartment", "hall", "plaza"]),
+        scenes: &["cornell", "knot", "nave", "kitchen", "apartment", "hall", "plaza"],
         pixels: [512, 512],
         run,
     },
@@ -66,13 +63,8 @@ const QUESTION: Question = Question {
 };
 
 const CURVES: &[Curve] = &[
-    Curve { name: "lightsplat, cache", colour: Colour::Red, line: Line::Front, holds: |c| !c.is_path() },
-    Curve {
-        name: "lightsplat, paths + denoiser",
-        colour: Colour::Green,
-        line: Line::Front,
-        holds: |c| c.is_path(),
-    },
+    Curve::of("lightsplat, cache", Colour::Red, Line::Front, |c| !c.is_path()),
+    Curve::of("lightsplat, paths + denoiser", Colour::Green, Line::Front, |c| c.is_path()),
 ];
 
 /// A quality that times are measured to.
@@ -104,7 +96,7 @@ fn run(study: &Study, scenes: &[PathBuf]) -> Result<Results, StudyError> {
     let answers: Vec<Answer> = scenes.iter().map(ask).collect::<Result<_, _>>()?;
     let times: Vec<Vec<Times>> = answers.iter().map(times).collect();
     let mut results = Results::new("Time and error", study.facts(), LEGEND);
-    let (peers, conditions) = (&study.plan.peers, conditions(&results));
+    let (peers, conditions) = (&study.plan.peers, format!("{}.", results.conditions()));
     let chart = chart(&answers, peers, conditions);
     results.document.plot("race", &chart);
     results.document.text(TABLE);
@@ -123,22 +115,6 @@ fn run(study: &Study, scenes: &[PathBuf]) -> Result<Results, StudyError> {
         results.document.grid(&others(peers));
     }
     Ok(results)
-}
-
-/// Returns the caption's sentence on machine and program.
-fn conditions(results: &Results) -> String {
-    let fact = |name| results.fact(name);
-    format!(
-        "lightsplat {} with {}, compiled for {}, at {} pixels. {}, threads: {}. Load at the start: {}. {}.",
-        fact("version"),
-        fact("denoiser"),
-        fact("compiled for"),
-        fact("pixels"),
-        fact("processor"),
-        fact("threads"),
-        fact("load at the start"),
-        fact("date")
-    )
 }
 
 /// Returns the table of other programs.
@@ -206,5 +182,105 @@ impl Target {
             Target::Psnr(psnr) => format!("PSNR {psnr}"),
             Target::Flip(flip) => format!("FLIP {flip}"),
         }
+    }
+}
+
+/// Colours of other programs. The curves of the race have the others.
+const COLOURS: [Colour; 6] =
+    [Colour::Blue, Colour::Purple, Colour::Orange, Colour::Olive, Colour::Steel, Colour::Grey];
+
+/// Names of the errors that are drawn.
+const REL_MSE: &str = "relMSE";
+const FLIP: &str = "FLIP";
+
+/// An error: its name, and its value for an image of another program.
+type Error = (&'static str, fn(&PeerFigure) -> Option<f64>);
+
+/// Errors in the order of the panels of a scene.
+const ERRORS: [Error; 2] = [(REL_MSE, |peer| peer.rel_mse), (FLIP, |peer| peer.flip)];
+
+/// Description of what the chart shows.
+const HOW_TO_READ: &str = "Lower left is better. Each point is an image. A line joins the images of a method that no other \
+    image of it beats.";
+
+/// Returns the chart: panels of the answers, then panels of the scenes that only others have rendered.
+fn chart(answers: &[Answer], peers: &[PeerFigure], conditions: String) -> Chart {
+    let mut names: Vec<&str> = Vec::new();
+    let mut scenes: Vec<&str> = answers.iter().map(|answer| &*answer.scene).collect();
+    let mut notes: Vec<&str> = Vec::new();
+    for peer in peers {
+        add(&mut names, &peer.name);
+        add(&mut scenes, &peer.scene);
+        peer.note.iter().for_each(|note| add(&mut notes, note));
+    }
+    let mut panels = Vec::new();
+    for scene in scenes {
+        let own = answers.iter().find(|answer| answer.scene == scene);
+        let own = own.map_or_else(|| empty(scene), |answer| answer.panels());
+        for (mut panel, (_, error)) in own.into_iter().zip(ERRORS) {
+            let of_scene: Vec<&PeerFigure> = peers.iter().filter(|peer| peer.scene == scene).collect();
+            panel.series.extend(names.iter().enumerate().map(|(i, name)| Series {
+                name: (*name).to_owned(),
+                colour: COLOURS[i % COLOURS.len()],
+                line: Line::Front,
+                points: points(of_scene.iter().filter(|peer| peer.name == *name), error),
+            }));
+            panels.push(panel);
+        }
+    }
+    let caption =
+        [HOW_TO_READ.to_owned(), conditions].into_iter().chain(notes.into_iter().map(str::to_owned));
+    Chart { panels, caption: caption.collect() }
+}
+
+/// Adds a name that is not there yet.
+fn add<'n>(names: &mut Vec<&'n str>, name: &'n str) {
+    if !names.contains(&name) {
+        names.push(name);
+    }
+}
+
+/// Returns the panels of a scene that the race has not rendered.
+fn empty(scene: &str) -> Vec<Panel> {
+    let panel = |(name, _): Error| Panel { title: format!("{scene}: {name}"), series: Vec::new() };
+    ERRORS.map(panel).into()
+}
+
+fn points<'p>(
+    peers: impl Iterator<Item = &'p &'p PeerFigure>,
+    error: fn(&PeerFigure) -> Option<f64>,
+) -> Vec<Point> {
+    let point =
+        |peer: &&PeerFigure| Some(Point { x: peer.seconds, y: error(peer)?, name: peer.label.clone() });
+    peers.filter_map(point).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn other_programs_have_their_points_in_the_panels_of_their_scenes() {
+        let peer = |name: &str, scene: &str, seconds: f64| PeerFigure {
+            name: name.to_owned(),
+            scene: scene.to_owned(),
+            label: "16 samples".to_owned(),
+            seconds,
+            psnr: None,
+            rel_mse: (name == "A").then_some(0.01),
+            flip: Some(0.05),
+            note: Some("Measured alone.".to_owned()),
+        };
+        let peers =
+            [peer("A", "knot", 1.0), peer("A", "knot", 2.0), peer("B", "knot", 3.0), peer("B", "nave", 4.0)];
+        let chart = chart(&[], &peers, "On a machine.".to_owned());
+        let titles: Vec<&str> = chart.panels.iter().map(|panel| &*panel.title).collect();
+        assert_eq!(titles, ["knot: relMSE", "knot: FLIP", "nave: relMSE", "nave: FLIP"]);
+        let counts = |panel: usize| -> Vec<usize> {
+            chart.panels[panel].series.iter().map(|series| series.points.len()).collect()
+        };
+        assert_eq!([counts(0), counts(1), counts(2), counts(3)], [[2, 0], [2, 1], [0, 0], [0, 1]]);
+        assert_eq!(chart.caption[1..], ["On a machine.", "Measured alone."]);
+        assert_ne!(chart.panels[0].series[0].colour, chart.panels[0].series[1].colour);
     }
 }
