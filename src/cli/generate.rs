@@ -3,7 +3,7 @@
 use super::args::Cli;
 use super::exit::Failure;
 use super::generate_args::{Artefact, GenerateArgs};
-use super::talk;
+use super::{set_args, talk};
 use anyhow::Context;
 use clap_complete::{Shell, generate};
 use clap_mangen::Man;
@@ -13,7 +13,6 @@ const NAME: &str = "lightsplat";
 
 /// Runs the command.
 pub fn run(args: GenerateArgs) -> Result<(), Failure> {
-    let mut bytes = Vec::new();
     let shell = match args.what {
         Artefact::Bash => Shell::Bash,
         Artefact::Zsh => Shell::Zsh,
@@ -23,8 +22,13 @@ pub fn run(args: GenerateArgs) -> Result<(), Failure> {
             return talk::print_bytes(&page);
         }
     };
-    generate(shell, &mut Cli::definition(), NAME, &mut bytes);
-    talk::print_bytes(&bytes)
+    talk::print_bytes(&completions(shell))
+}
+
+fn completions(shell: Shell) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    generate(shell, &mut set_args::for_completion(&Cli::definition()), NAME, &mut bytes);
+    bytes
 }
 
 /// Returns the man page: the program, then the options of each command.
@@ -54,9 +58,9 @@ mod tests {
             let name = sub.get_name();
             assert!(page.contains(&format!("LIGHTSPLAT {}", name.to_uppercase())), "{name}");
             for shell in [Shell::Bash, Shell::Zsh, Shell::Fish] {
-                let mut bytes = Vec::new();
-                generate(shell, &mut Cli::definition(), NAME, &mut bytes);
-                assert!(String::from_utf8_lossy(&bytes).contains(name), "{shell} {name}");
+                let script = String::from_utf8(completions(shell)).unwrap();
+                assert!(script.contains(name), "{shell} {name}");
+                assert!(script.contains("epsilon=") && !script.contains("set epsilon"), "{shell}");
             }
         }
         assert!(page.contains("env") && page.contains("no\\-overwrite"));

@@ -4,6 +4,7 @@
 //! `--set=epsilon=0.1` become the word `--set epsilon=0.1`. So settings have the parsers and the errors of options.
 
 use super::method_args;
+use clap::builder::{PossibleValuesParser, Resettable};
 use clap::error::ErrorKind;
 use clap::parser::ValueSource;
 use clap::{Arg, ArgAction, ArgMatches, Command};
@@ -66,6 +67,22 @@ pub fn with_settings(command: Command) -> Command {
     let set = set
         .help("Value of a setting of the paper or of tuning. `lightsplat help settings` lists the settings");
     command.arg(set.value_parser(unknown))
+}
+
+/// Returns a command for completion scripts: its settings are values of `--set`, since their long names have spaces.
+pub fn for_completion(command: &Command) -> Command {
+    let keys: Vec<String> = command.get_arguments().filter_map(key).map(|key| format!("{key}=")).collect();
+    let option = |arg: &Arg| {
+        // Settings are among what options exclude and require.
+        let arg = arg.clone().conflicts_with(Resettable::Reset).requires(Resettable::Reset);
+        let is_set = arg.get_id() == "set";
+        if is_set { arg.value_parser(PossibleValuesParser::new(keys.clone())) } else { arg }
+    };
+    let options = command.get_arguments().filter(|arg| key(arg).is_none()).map(option);
+    let about = command.get_about().cloned().unwrap_or_default();
+    let plain = Command::new(command.get_name().to_owned()).about(about).args(options);
+    let plain = plain.subcommands(command.get_subcommands().map(for_completion));
+    command.get_version().map_or(plain.clone(), |version| plain.version(version.to_owned()))
 }
 
 /// Refuses a setting that no argument takes.

@@ -184,6 +184,9 @@ fn the_version_names_libraries_and_instruction_sets() {
     assert_eq!(sandbox.run(&["-V"]).expect(0).stdout.lines().count(), 1);
     let bash = sandbox.run(&["generate", "bash"]).expect(0).stdout;
     assert!(bash.contains("--env-rotate"));
+    fs::write(sandbox.path("completions"), bash).unwrap();
+    let checked = std::process::Command::new("bash").arg("-n").arg(sandbox.path("completions")).status();
+    assert!(checked.is_ok_and(|status| status.success()));
 }
 
 #[test]
