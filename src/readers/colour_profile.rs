@@ -7,6 +7,7 @@
 //! glTF (2.0 specification, section 3.8.3) and Mitsuba read all images as sRGB, whatever their profiles.
 
 use super::error::{Location, Warning};
+use glam::{DMat3, DVec3};
 use image::{DynamicImage, ImageBuffer, ImageDecoder, ImageReader};
 use moxcms::{
     Chromaticity, CicpColorPrimaries, CicpProfile, CmsError, ColorPrimaries, ColorProfile, DataColorSpace,
@@ -22,6 +23,13 @@ use std::sync::Arc;
 const MAX_DIFFERENCE: f32 = 0.015;
 /// Greatest code of 16 bits.
 const MAX_CODE: f32 = 65535.0;
+
+/// Matrix from CIE XYZ to linear Rec. 709 (IEC 61966-2-1).
+pub(crate) const XYZ_TO_RGB: DMat3 = DMat3::from_cols(
+    DVec3::new(3.240479, -0.969256, 0.055648),
+    DVec3::new(-1.537150, 1.875991, -0.204043),
+    DVec3::new(-0.498535, 0.041556, 1.057311),
+);
 
 /// Converts an sRGB value to linear (IEC 61966-2-1).
 pub(crate) fn srgb_to_linear(encoded: f32) -> f32 {

@@ -3,6 +3,7 @@
 use crate::decode::DecodedImage;
 use crate::draft::DraftMesh;
 use crate::error::{Location, Log, SceneError};
+use crate::findings::listed;
 use crate::instances::ReadPlan;
 use crate::plan::{Contents, MeshPlan, TextureSource};
 use scene::{Relief, TextureId};
@@ -47,13 +48,9 @@ pub(crate) fn report(
     }
     for MeshesWithoutUvs { place, is_modelled, mut names } in findings {
         names.dedup();
-        let mut listed: Vec<String> =
-            names.iter().take(MAX_LISTED).map(|name| format!("\"{name}\"")).collect();
-        if names.len() > MAX_LISTED {
-            listed.push(format!("{} more", names.len() - MAX_LISTED));
-        }
-        let what =
-            format!("triangles lack texture coordinates, which their textures need: {}", listed.join(", "));
+        let names: Vec<String> = names.iter().map(|name| format!("\"{name}\"")).collect();
+        let names = listed(&names, MAX_LISTED);
+        let what = format!("triangles lack texture coordinates, which their textures need: {names}");
         match is_modelled {
             true => log.note(place, what, "each shows half of its texture, as in Mitsuba"),
             false => log.warn(place, what, "one part of the texture is used; export texture coordinates")?,

@@ -21,6 +21,7 @@ mod decode;
 mod draft;
 pub mod error;
 mod file;
+mod findings;
 mod finish;
 mod gltf;
 #[cfg(test)]

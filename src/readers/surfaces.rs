@@ -3,6 +3,7 @@
 use crate::attributes::{COLOUR, find};
 use crate::draft::DraftMesh;
 use crate::error::Warning;
+use crate::findings::listed;
 use crate::mesh::material_parts::split_by_material;
 use crate::mesh::{self, Normals, Placement, RawMesh};
 use crate::plan::{Appearance, MaterialPlan, MeshPlan, MeshSource, NamedAppearances};
@@ -93,18 +94,15 @@ fn undefined_materials<'a>(
     fallback: &str,
 ) -> Option<Warning> {
     let missing: Vec<&str> = parts.filter(|name| !defined.contains_key(*name)).collect();
-    let named: Vec<&&str> = missing.iter().filter(|name| !name.is_empty()).collect();
-    let mut listed = named.iter().take(MAX_LISTED).map(|name| format!("\"{name}\"")).collect::<Vec<_>>();
-    if named.len() > MAX_LISTED {
-        listed.push(format!("{} more", named.len() - MAX_LISTED));
-    }
+    let named = missing.iter().filter(|name| !name.is_empty());
+    let named: Vec<String> = named.map(|name| format!("\"{name}\"")).collect();
     let mesh = &plan.name;
-    let what = match (missing.is_empty(), listed.is_empty()) {
+    let what = match (missing.is_empty(), named.is_empty()) {
         (true, _) => return None,
         (false, true) if defined.is_empty() => "neither the mesh nor its file has a material".to_owned(),
         (false, true) => format!("faces of \"{mesh}\" have no material"),
         (false, false) => {
-            format!("materials that \"{mesh}\" uses are not in its libraries: {}", listed.join(", "))
+            format!("materials that \"{mesh}\" uses are not in its libraries: {}", listed(&named, MAX_LISTED))
         }
     };
     Some(Warning::new(plan.place.clone(), what, fallback))

@@ -1,9 +1,9 @@
 //! Places of the instances of a node's mesh (`EXT_mesh_gpu_instancing`).
 
 use super::document::GltfFile;
-use super::report::Findings;
 use super::transform::quaternion;
 use crate::error::SceneError;
+use crate::findings::Findings;
 use glam::{DMat4, DVec3};
 use gltf_json::{Index, Node};
 use serde_json::Value;

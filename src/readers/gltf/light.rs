@@ -7,9 +7,9 @@
 
 use super::document::GltfFile;
 use super::generator::Generator;
-use super::report::Findings;
 use super::transform::Place;
 use crate::error::SceneError;
+use crate::findings::Findings;
 use base::math::{Rgb, unit};
 use glam::{DMat3, DVec3, Vec3};
 use gltf_json::extensions::scene::khr_lights_punctual::{Light, Type};

@@ -2,7 +2,7 @@
 
 use super::document::GltfFile;
 use super::nodes::Placed;
-use super::report::Findings;
+use crate::findings::Findings;
 use std::collections::BTreeSet;
 
 /// Last words of names that suggest a lamp.

@@ -1,9 +1,9 @@
 //! Conversion of primitives to triangle meshes.
 
 use super::document::GltfFile;
-use super::report::Findings;
 use crate::attributes::{NamedAttribute, VERTEX_ALPHA, VERTEX_COLOUR};
 use crate::error::SceneError;
+use crate::findings::Findings;
 use crate::mesh::RawMesh;
 use base::math::Rgb;
 use glam::{DVec3, Vec2, Vec3, Vec4};

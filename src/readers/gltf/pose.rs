@@ -3,8 +3,8 @@
 use super::animation::Clip;
 use super::document::GltfFile;
 use super::nodes::Placed;
-use super::report::Findings;
 use super::transform::Local;
+use crate::findings::Findings;
 use gltf_json::Node;
 use gltf_json::mesh::Mesh;
 use std::collections::BTreeSet;

@@ -1,11 +1,12 @@
 //! Linear Rec. 709 colours of sampled spectra.
 //!
 //! Sources: CIE 015:2018, tables 1 and 6: colour-matching functions of the 2° observer of 1931, and illuminant D65.
-//! Values are linear between the table's wavelengths, every 5 nm. The matrix is that of IEC 61966-2-1.
+//! Values are linear between the table's wavelengths, every 5 nm.
 //!
 //! Units: wavelengths in nm.
 
-use glam::{DMat3, DVec3};
+use crate::colour_profile::XYZ_TO_RGB;
+use glam::DVec3;
 
 /// First wavelength of the tables.
 const FIRST: f64 = 360.0;
@@ -15,13 +16,6 @@ const SPACING: f64 = 5.0;
 
 /// Number of wavelengths at which a spectrum is evaluated, as in Mitsuba.
 const STEPS: usize = 1000;
-
-/// Matrix from CIE XYZ to linear Rec. 709.
-const XYZ_TO_RGB: DMat3 = DMat3::from_cols(
-    DVec3::new(3.240479, -0.969256, 0.055648),
-    DVec3::new(-1.537150, 1.875991, -0.204043),
-    DVec3::new(-0.498535, 0.041556, 1.057311),
-);
 
 /// Returns the colour of a spectrum. `samples` are wavelengths in ascending order and values, linear between them and
 /// zero outside.

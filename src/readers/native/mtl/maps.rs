@@ -1,7 +1,7 @@
 //! Maps of MTL materials, and numbers that may have one.
 
+use super::LibraryReader;
 use super::options::{MapOptions, parse};
-use super::report::LibraryReader;
 use super::source::SourceMaterial;
 use crate::decode::{Channel, DecodedImage};
 use crate::error::{Location, SceneError, Warning};

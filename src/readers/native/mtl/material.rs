@@ -14,9 +14,9 @@
 //!
 //! All materials are two-sided.
 
+use super::LibraryReader;
 use super::maps::SLACK;
-use super::report::LibraryReader;
-use super::source::{SourceMaterial, statements};
+use super::source::{SourceMaterial, Unsupported, statements};
 use crate::error::{Location, SceneError};
 use crate::plan::Appearance;
 use crate::statements::note;
@@ -37,7 +37,9 @@ const EXTENSION: [&str; 11] =
 impl LibraryReader<'_, '_> {
     /// Adds a material to the plan; returns its appearance.
     pub fn appearance(&mut self, source: &SourceMaterial) -> Result<Appearance, SceneError> {
-        source.unsupported.iter().for_each(|lack| self.add(&source.name, lack.clone()));
+        for Unsupported { what, fallback, line } in &source.unsupported {
+            self.lacks_at(source, *line, what, fallback);
+        }
         let material = self.material(source)?;
         let emission = self.emission(source)?;
         let material = self.builder.contents.add_material(material, source.place.clone());

@@ -1,10 +1,9 @@
 //! Wavefront MTL, the material libraries of an OBJ file: `source` parses them, `material` and `maps` convert the
-//! materials, and `report` names what is not supported.
+//! materials.
 
 mod maps;
 mod material;
 mod options;
-mod report;
 mod source;
 #[cfg(test)]
 mod tests;
@@ -12,14 +11,37 @@ mod tests;
 use super::builder::SceneBuilder;
 use crate::error::{Location, SceneError};
 use crate::file::{fnv1a, folder_of, read_file};
+use crate::findings::Findings;
 use crate::mesh::encodings::existing_file;
 use crate::mesh::obj_references::{Definitions, References, listed_files, references};
 use crate::mesh::wavefront::name;
 use crate::plan::NamedAppearances;
-use report::LibraryReader;
 use source::SourceMaterial;
 use std::collections::{BTreeMap, BTreeSet};
+use std::fmt::Display;
 use std::path::{Path, PathBuf};
+
+/// Converter of the materials of a library.
+struct LibraryReader<'b, 'a> {
+    builder: &'b mut SceneBuilder<'a>,
+    file: &'b Path,
+    /// Length of the file's unit in the world.
+    unit: f32,
+    /// Features that are not supported, with the names of the materials that ask for them.
+    findings: Findings,
+}
+
+impl LibraryReader<'_, '_> {
+    /// Adds a feature that is not supported, at the line of the statement `keyword` or of the material.
+    fn lacks(&mut self, source: &SourceMaterial, keyword: &str, what: impl Display, fallback: &str) {
+        self.lacks_at(source, source.line(keyword), what, fallback);
+    }
+
+    fn lacks_at(&mut self, source: &SourceMaterial, line: u32, what: impl Display, fallback: &str) {
+        let (place, what) = (Location::line(self.file, line), format!("{what} is not supported"));
+        self.findings.lacks_at(place, &what, fallback, &format!("\"{}\"", source.name));
+    }
+}
 
 impl SceneBuilder<'_> {
     /// Reads the materials of the OBJ's libraries. Returns also whether the OBJ has colours of vertices. `unit` is
@@ -68,7 +90,8 @@ impl SceneBuilder<'_> {
         self.name_repeated(&read, &wanted)?;
         let mut first = 0;
         for (file, library) in read {
-            let mut reader = LibraryReader::new(self, &file, unit);
+            let findings = Findings::default();
+            let mut reader = LibraryReader { builder: self, file: &file, unit, findings };
             for material in library {
                 if let Some(names) = wanted.remove(&first) {
                     let appearance = reader.appearance(&material)?;
@@ -76,7 +99,8 @@ impl SceneBuilder<'_> {
                 }
                 first += 1;
             }
-            reader.report()?;
+            let findings = reader.findings;
+            findings.write(&Location::file(&file), self.log)?;
         }
         Ok((named, has_colours))
     }

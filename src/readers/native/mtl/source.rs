@@ -4,14 +4,14 @@
 //!
 //! Reason against `tobj` 4.0.5: a colour of one or two numbers makes its MTL reader panic, and its errors name no line.
 
-use crate::colour_profile::srgb_to_linear;
+use crate::colour_profile::{XYZ_TO_RGB, srgb_to_linear};
 use crate::error::{Location, SceneError, Warning};
 use crate::mesh::encodings;
 use crate::mesh::faults::{MAX_CODE, are_codes, note_of_codes};
 use crate::mesh::wavefront::{self, numbers, shown, split_word, values, words};
 use crate::statements::{Fate, Statement, table};
 use base::math::Rgb;
-use glam::{DMat3, DVec3};
+use glam::DVec3;
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -229,20 +229,13 @@ impl SourceMaterial {
             }
             Some(b"xyz") => {
                 let xyz = finite(split_word(rest.trim_ascii_start()).1)?;
-                Ok((RGB_OF_XYZ * DVec3::from(xyz)).as_vec3().max(Rgb::ZERO))
+                Ok((XYZ_TO_RGB * DVec3::from(xyz)).as_vec3().max(Rgb::ZERO))
             }
             _ if values(rest).count() == 1 => number(rest).map(Rgb::splat),
             _ => finite(rest).map(|colour| DVec3::from(colour).as_vec3()),
         }
     }
 }
-
-/// Linear Rec. 709 from CIE XYZ (IEC 61966-2-1).
-const RGB_OF_XYZ: DMat3 = DMat3::from_cols_array(&[
-    3.2406, -0.9689, 0.0557, //
-    -1.5372, 1.8758, -0.2040, //
-    -0.4986, 0.0415, 1.0570,
-]);
 
 /// Parses the first number of a line.
 fn number(rest: &[u8]) -> Result<f32, String> {
