@@ -38,7 +38,7 @@ pub fn check_apart(entries: &[JobEntry]) -> Result<(), Failure> {
             let Some(Ok(names)) = target.to_str().map(str::parse::<FileNames>) else { continue };
             let [all, some] = walks.entry(target).or_default();
             files =
-                args.frames.iter().flat_map(|frames| frames.iter()).map(|frame| names.of(frame)).collect();
+                args.frames.iter().flat_map(|frames| frames.iter()).map(|frame| names.file(frame)).collect();
             let other = if args.frames.is_none() { all.or(*some) } else { *all };
             if let Some(other) = other {
                 return Err(shared(other, entry));

@@ -22,7 +22,7 @@ const MAX_PIXELS: u64 = 1 << 28;
 pub fn run(args: SheetArgs) -> Result<(), Failure> {
     check_name(&args.output, "png", "--output", "for PNG")?;
     atomic::check_writable(&args.output).map_err(Failure::output)?;
-    let picture_of = |number| args.names.of(number).with_extension("png");
+    let picture_of = |number| args.names.file(number).with_extension("png");
     Inputs::new(args.frames.iter().map(picture_of)).check_apart([args.output.as_path()])?;
     let count = args.frames.iter().len() as u32;
     let mut sheet: Option<Sheet> = None;

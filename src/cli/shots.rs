@@ -28,7 +28,7 @@ impl Shots {
     /// Returns the main file of an image: OpenEXR, or a PNG file alone.
     pub fn file(&self, number: usize) -> PathBuf {
         match self {
-            Shots::Path(names) => names.of(number),
+            Shots::Path(names) => names.file(number),
             Shots::Views(views) => views.exr(number),
         }
     }

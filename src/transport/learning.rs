@@ -181,9 +181,9 @@ impl Learning {
             (points, rays)
         };
         let chunks = (0..self.paths.div_ceil(CHUNK as u32)).into_par_iter().one_by_one();
-        let found: Vec<(Vec<SurfacePoint>, u64)> = chunks.map(chunk).collect();
-        counts.rays += found.iter().map(|(_, rays)| rays).sum::<u64>();
-        found.into_iter().flat_map(|(points, _)| points).collect()
+        let chunks: Vec<(Vec<SurfacePoint>, u64)> = chunks.map(chunk).collect();
+        counts.rays += chunks.iter().map(|(_, rays)| rays).sum::<u64>();
+        chunks.into_iter().flat_map(|(points, _)| points).collect()
     }
 }
 

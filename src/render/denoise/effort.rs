@@ -53,14 +53,15 @@ mod tests {
     use super::*;
 
     /// Returns the quality for a thousand pixels.
-    fn of(work: f64, sampled: Sampled) -> Quality {
+    fn quality(work: f64, sampled: Sampled) -> Quality {
         for_image(1000, work, sampled)
     }
 
     #[test]
     fn quality_rises_with_the_work_on_a_pixel() {
-        let by_work: Vec<Quality> =
-            [0.0, 1.0, 4.0, 6.0, 8.0, 16.0, 20.0, 100.0].map(|work| of(1000.0 * work, Sampled::Part)).into();
+        let by_work: Vec<Quality> = [0.0, 1.0, 4.0, 6.0, 8.0, 16.0, 20.0, 100.0]
+            .map(|work| quality(1000.0 * work, Sampled::Part))
+            .into();
         assert!(by_work.is_sorted(), "{by_work:?}");
         assert_eq!((by_work[0], by_work[5], by_work[7]), (Quality::Fast, Quality::Balanced, Quality::High));
     }
@@ -69,7 +70,7 @@ mod tests {
     fn images_of_sampled_light_alone_get_better_networks() {
         let works = (0..40).map(|k| 1000.0 * f64::from(k));
         let better = works.filter(|work| {
-            let [all, part] = [Sampled::All, Sampled::Part].map(|sampled| of(*work, sampled));
+            let [all, part] = [Sampled::All, Sampled::Part].map(|sampled| quality(*work, sampled));
             assert!(all >= part, "{work}: {all:?} {part:?}");
             all > part
         });

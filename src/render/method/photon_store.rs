@@ -108,14 +108,14 @@ impl PhotonStore {
         control: &Control,
         tally: &mut Tally,
     ) -> Option<Caustics> {
-        let found = tally.time(Stage::LightPass, || self.for_view(world, view, settings, control));
-        if found.paths > 0 {
-            tally.count("Caustics/photons", found.photons);
-            tally.count("Caustics/photon paths", found.paths);
-            tally.rays(found.rays);
-            tally.shadow_rays("Rays/shadow", found.shadow_rays);
+        let view_photons = tally.time(Stage::LightPass, || self.for_view(world, view, settings, control));
+        if view_photons.paths > 0 {
+            tally.count("Caustics/photons", view_photons.photons);
+            tally.count("Caustics/photon paths", view_photons.paths);
+            tally.rays(view_photons.rays);
+            tally.shadow_rays("Rays/shadow", view_photons.shadow_rays);
         }
-        found.caustics
+        view_photons.caustics
     }
 
     /// Drops all photons.

@@ -151,25 +151,25 @@ fn for_time(
     let finishing = control.plan(|| FinishingTime::of(finish, view, &guided, asked - passed()));
     let left = || asked - finishing.denoising - passed();
     let deadline = Deadline { left: &left, finishing: finishing.sample };
-    let found = control.plan(|| plan::for_time(world, view, &ladder, &deadline, control));
-    let found = found.ok_or(FrameError::Unplanned)?;
+    let time_plan = control.plan(|| plan::for_time(world, view, &ladder, &deadline, control));
+    let time_plan = time_plan.ok_or(FrameError::Unplanned)?;
     notes.stats.add_time(Stage::Plan, watch.elapsed());
     let before = passed();
-    let planned = before + found.seconds + finishing.denoising;
+    let planned = before + time_plan.seconds + finishing.denoising;
     let in_reach = planned <= asked * LATE;
-    notes.remarks.extend(report::of_time(asked, [before, planned], in_reach, &found.options));
+    notes.remarks.extend(report::of_time(asked, [before, planned], in_reach, &time_plan.options));
     let stats = &mut notes.stats;
     stats.add("Plan/time asked [s]", asked);
     stats.add("Plan/time planned, without writing [s]", planned);
     stats.count("Plan/in time (1: yes)", u64::from(in_reach));
-    stats.count("Plan/small renders", found.trials);
+    stats.count("Plan/small renders", time_plan.trials);
     let plan = json!({
         "asked_seconds": asked,
         "planned_seconds": planned,
         "in_reach": in_reach,
-        "options": found.options,
+        "options": time_plan.options,
     });
-    let method = found.method;
+    let method = time_plan.method;
     let watch = Stopwatch::start();
     let output = method.render(world, &LightStore::default(), view, control);
     let output = finish.apply(&method, output);
@@ -196,27 +196,27 @@ fn for_error(
     let ErrorLimit { error, max_samples, .. } = *limit;
     let goal = ErrorGoal { error, measure, max_samples, render: &render };
     let watch = Stopwatch::start();
-    let found = control.plan(|| plan::for_error(world, view, ladder, chooser, &goal, control));
-    let found = found.ok_or(FrameError::Unplanned)?;
-    notes.stats.add_time(Stage::Plan, watch.elapsed().without(found.time));
-    let got = found.verified.map(|v| v.relative_rms);
-    notes.remarks.extend(found.missed.map(report::of_missed));
-    notes.remarks.extend(report::of_error(error, &found.options, got.filter(|_| !found.met)));
+    let image = control.plan(|| plan::for_error(world, view, ladder, chooser, &goal, control));
+    let image = image.ok_or(FrameError::Unplanned)?;
+    notes.stats.add_time(Stage::Plan, watch.elapsed().without(image.time));
+    let got = image.verified.map(|v| v.relative_rms);
+    notes.remarks.extend(image.missed.map(report::of_missed));
+    notes.remarks.extend(report::of_error(error, &image.options, got.filter(|_| !image.met)));
     let stats = &mut notes.stats;
     stats.add("Plan/error asked [%]", 100.0 * error);
-    stats.add("Plan/error planned [%]", 100.0 * found.expected);
-    stats.count("Plan/error met (1: yes)", u64::from(found.met));
-    stats.count("Plan/renders", found.renders);
+    stats.add("Plan/error planned [%]", 100.0 * image.expected);
+    stats.count("Plan/error met (1: yes)", u64::from(image.met));
+    stats.count("Plan/renders", image.renders);
     let plan = json!({
         "asked_error": error,
-        "planned_error": found.expected,
+        "planned_error": image.expected,
         "got_error": got,
-        "met": found.met,
-        "options": found.options,
+        "met": image.met,
+        "options": image.options,
     });
-    let missed = found.missed.is_some();
-    let settings = found.measure.of(&found.method);
-    let measured = Some(Measurement { settings, result: found.verified });
-    let (method, output, seconds) = (found.method, found.output, found.time.wall_seconds);
+    let missed = image.missed.is_some();
+    let settings = image.measure.with_samples_of(&image.method);
+    let measured = Some(Measurement { settings, result: image.verified });
+    let (method, output, seconds) = (image.method, image.output, image.time.wall_seconds);
     Ok((Made { method, output, seconds, measured, plan }, missed))
 }

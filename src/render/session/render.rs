@@ -107,13 +107,13 @@ impl Session {
         }
         let measure = || measure(&context, goal, &method, &film.color, &mut stats);
         let measured = if complete { measured.or_else(measure) } else { None };
-        let found = measured.as_ref().and_then(|m| Some((m.result.as_ref()?, &m.settings)));
-        if let Some((error, settings)) = found {
+        let measured_error = measured.as_ref().and_then(|m| Some((m.result.as_ref()?, &m.settings)));
+        if let Some((error, settings)) = measured_error {
             report::store_error(error, settings, &mut stats, &mut film.metadata);
         }
-        let facts = report.json(&film.metadata, found);
-        let measured_remarks = found.map_or_else(Vec::new, |(error, _)| report::of_measured(error));
-        let unverified = measured.is_some() && found.is_none();
+        let facts = report.json(&film.metadata, measured_error);
+        let measured_remarks = measured_error.map_or_else(Vec::new, |(error, _)| report::of_measured(error));
+        let unverified = measured.is_some() && measured_error.is_none();
         Ok(RenderedFrame {
             film,
             method,
@@ -161,7 +161,7 @@ fn measure(
     stats: &mut Stats,
 ) -> Option<Measurement> {
     let FrameContext { world, view, control, .. } = *context;
-    let settings = goal.verify?.of(method);
+    let settings = goal.verify?.with_samples_of(method);
     let result = stats.time(Stage::Verify, || verify(world, view, image, &settings, control));
     Some(Measurement { settings, result })
 }

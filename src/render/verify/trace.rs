@@ -174,7 +174,7 @@ pub struct VerifySettings {
 
 impl VerifySettings {
     /// Returns these settings for an image of `method`, whose eye samples may differ from those planned with.
-    pub fn of(self, method: &Method) -> VerifySettings {
+    pub fn with_samples_of(self, method: &Method) -> VerifySettings {
         let estimand = match self.estimand {
             Estimand::Pixels => Estimand::Pixels,
             Estimand::EyeSamples { .. } => Estimand::EyeSamples { spp: method.spp(), seed: method.seed() },

@@ -19,7 +19,7 @@ pub struct FileNames {
 
 impl FileNames {
     /// Returns the file of a frame.
-    pub fn of(&self, frame: usize) -> PathBuf {
+    pub fn file(&self, frame: usize) -> PathBuf {
         let FileNames { folder, before, digits, after } = self;
         folder.join(format!("{before}{frame:0digits$}{after}"))
     }
@@ -73,7 +73,7 @@ impl FromStr for FileNames {
 pub fn numbered(path: &Path, frame: Option<usize>) -> Result<PathBuf, String> {
     match (FileNames::parse(path)?, frame) {
         (None, _) => Ok(path.to_owned()),
-        (Some(names), Some(frame)) => Ok(names.of(frame)),
+        (Some(names), Some(frame)) => Ok(names.file(frame)),
         (Some(_), None) => {
             Err("the file name has a placeholder for the frame number; add --frame N, or name the file without # and %d"
                 .to_owned())
@@ -118,7 +118,7 @@ mod tests {
     #[test]
     fn numbers_stand_with_their_digits_in_the_place_for_them() {
         let name = |pattern: &str, frame| {
-            let file = pattern.parse::<FileNames>().unwrap().of(frame);
+            let file = pattern.parse::<FileNames>().unwrap().file(frame);
             file.to_str().unwrap().to_owned()
         };
         assert_eq!(name("frames/f.####.exr", 7), "frames/f.0007.exr");
@@ -137,7 +137,7 @@ mod tests {
             numbered(Path::new(pattern), frame).map(|file| file.to_str().unwrap().to_owned())
         };
         for pattern in ["a#/still.####.exr", "a#/still.%04d.png", "a#/still#.png"] {
-            let walked = FileNames::parse(Path::new(pattern)).unwrap().unwrap().of(7);
+            let walked = FileNames::parse(Path::new(pattern)).unwrap().unwrap().file(7);
             assert_eq!(name(pattern, Some(7)), Ok(walked.to_str().unwrap().to_owned()));
         }
         assert_eq!(name("still.####.exr", Some(7)).unwrap(), "still.0007.exr");

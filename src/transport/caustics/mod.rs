@@ -110,9 +110,9 @@ impl PilotPaths {
         let max_edges = max_depth.saturating_sub(1);
         let may_be = world.specular.has_delta_lobes() && world.specular.spread_light() && max_edges >= 2;
         let emitter = if may_be { PhotonEmitter::new(world) } else { None };
-        let found =
+        let pilot =
             emitter.map(|emitter| CausticTracer::new(world, &emitter, seed, max_edges, control).pilot());
-        PilotPaths { found, seed, max_edges }
+        PilotPaths { found: pilot, seed, max_edges }
     }
 
     /// Number of pilot paths.

@@ -131,10 +131,10 @@ impl LightBySpecularLobes {
 
     /// Adds the light to an image of the window, and to its contributions by technique.
     pub fn add_to(&self, picture: &mut Image, contributions: &mut Contributions) {
-        let found = self.image.as_ref().map_or(0.0, Image::luminance);
-        let by_photons = self.chains.by_photons(found);
+        let luminance = self.image.as_ref().map_or(0.0, Image::luminance);
+        let by_photons = self.chains.by_photons(luminance);
         contributions.add(Contributions::PHOTONS, by_photons);
-        contributions.add("paths through glass or by mirrors", found - by_photons);
+        contributions.add("paths through glass or by mirrors", luminance - by_photons);
         for (pixel, light) in picture.pixels.iter_mut().zip(self.image.iter().flat_map(|image| &image.pixels))
         {
             *pixel += *light;

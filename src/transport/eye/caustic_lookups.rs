@@ -49,13 +49,13 @@ impl CausticLookups {
         if !self.looks_up(end.path) {
             return Rgb::ZERO;
         }
-        let found = caustics.reflected(&end.surface, &end.bsdf, end.out, end.distance, end.depth);
+        let reflected = caustics.reflected(&end.surface, &end.bsdf, end.out, end.distance, end.depth);
         let scale = self.samples as f32 / self.looking as f32;
-        let radiance = found.radiance * scale;
+        let radiance = reflected.radiance * scale;
         let seen = luminance(end.throughput * radiance);
         if seen.is_finite() {
             self.found += f64::from(seen);
-            let by_emitted = f64::from(found.by_emitted.min(f32::MAX));
+            let by_emitted = f64::from(reflected.by_emitted.min(f32::MAX));
             self.square += f64::from(luminance(end.throughput)).powi(2) * by_emitted * f64::from(scale);
         }
         radiance

@@ -144,8 +144,8 @@ impl Sampler<'_> {
             let ray = self.view.sample_ray(pixel, jitter, self.seed, sample);
             rays.set(lane, &self.world.behind_hidden(ray));
         }
-        let found = self.world.accel.closest_hit16(&rays, first_lanes(LANES), true, &mut hits);
-        for lane in (0..LANES).filter(|lane| found >> lane & 1 != 0) {
+        let hit_lanes = self.world.accel.closest_hit16(&rays, first_lanes(LANES), true, &mut hits);
+        for lane in (0..LANES).filter(|lane| hit_lanes >> lane & 1 != 0) {
             match self.has_gaps {
                 true => self.follow(rays.get(lane), shares),
                 false => self.count(hits.geometry[lane], 1.0, shares),

@@ -50,12 +50,12 @@ impl<'w> EyePass<'w> {
             if control.is_cancelled() {
                 return None;
             }
-            let found = works.with(|work| tracer.first_samples(index, work));
+            let tile = works.with(|work| tracer.first_samples(index, work));
             if let Some(live) = &live {
-                live.set(found.light(view.window.width));
+                live.set(tile.light(view.window.width));
             }
             control.advance(1);
-            Some(found)
+            Some(tile)
         };
         let tiles = (0..view.window.tile_count(TILE)).into_par_iter().one_by_one();
         let tiles: Vec<SampledTile> = tiles.map(first).flatten().collect();

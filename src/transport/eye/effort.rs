@@ -68,7 +68,7 @@ impl<'w> Tracer<'_, 'w> {
         let rays = a_sample * f64::from(spp) * film;
         let squares: Vec<Luminances> = squares.into_iter().zip(&values).map(filled).collect();
         let dark = AdaptiveRule::new(&squares, 0.0).dark;
-        let noise = PixelNoise::of(&values, &again, spp, dark);
+        let noise = PixelNoise::estimated(&values, &again, spp, dark);
         let light_samples = noise.light_samples();
         let extra = &self.direct.extra_samples;
         let rounds = extra.rounds(rays, noise.with(light_samples));
@@ -111,7 +111,7 @@ struct PixelNoise {
 impl PixelNoise {
     /// Estimates the noise of pixels with `spp` samples that were sampled twice. `dark` is the luminance that counts
     /// as dark.
-    fn of(values: &Means, again: &Means, spp: u32, dark: f32) -> PixelNoise {
+    fn estimated(values: &Means, again: &Means, spp: u32, dark: f32) -> PixelNoise {
         // A share f of the samples differs from the mean of all by √((1 - f) / f) times the error of that mean.
         let first = (spp / 2) as f32 / spp as f32;
         let to_error = (first / (1.0 - first)).sqrt();
@@ -143,7 +143,7 @@ mod tests {
     use base::sampling::owen_sobol_2d;
 
     fn number(values: &Means, again: &Means, spp: u32) -> u32 {
-        PixelNoise::of(values, again, spp, 0.08).light_samples()
+        PixelNoise::estimated(values, again, spp, 0.08).light_samples()
     }
 
     /// The best number for a thousand pixels of mean 1 whose light samples have that part of their noise.

@@ -74,14 +74,14 @@ pub(super) fn edges<'w, R: PathPolicy<'w>>(
             }
         }
         start(&mut batch, paths, world, view, Estimand::Pixels, 1);
-        let found = batch.trace(world, settings.max_depth, &mut all(), &mut counts);
-        sums[2] = found.map(|light| finite(light).sqrt()).sum::<f64>();
+        let radiances = batch.trace(world, settings.max_depth, &mut all(), &mut counts);
+        sums[2] = radiances.map(|light| finite(light).sqrt()).sum::<f64>();
         (sums, counts)
     };
-    let found: Vec<([f64; 4], RayCounts)> =
+    let batches: Vec<([f64; 4], RayCounts)> =
         (0..PATHS / BATCH).into_par_iter().one_by_one().map(|batch| sums_of(batch * BATCH)).collect();
     let mut sums = [0.0; 4];
-    for (of_batch, traced) in found {
+    for (of_batch, traced) in batches {
         sums.iter_mut().zip(of_batch).for_each(|(sum, of_batch)| *sum += of_batch);
         counts.rays += traced.rays;
         counts.shadow_rays += traced.shadow_rays;

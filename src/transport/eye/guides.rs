@@ -177,7 +177,7 @@ impl FirstSurfaces {
     }
 
     /// Returns the sums of the surfaces seen in a pixel.
-    pub fn of(&self, pixel: usize) -> Guide {
+    pub fn at(&self, pixel: usize) -> Guide {
         self.pixels.get(pixel).copied().unwrap_or_default()
     }
 }

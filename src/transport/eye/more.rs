@@ -57,7 +57,7 @@ impl<'w> Tracer<'_, 'w> {
         if is_first {
             (found.chains, found.nonfinite) = (tile.chains, tile.nonfinite);
         }
-        let mut pixels = PartPixels::of(&tile, &chosen);
+        let mut pixels = PartPixels::chosen(&tile, &chosen);
         if multiple > 0 && !cancelled {
             self.sample_more(&tile, &chosen, multiple, &mut pixels, &mut found, work);
         } else if !cancelled {
@@ -139,7 +139,7 @@ struct PartPixels {
 
 impl PartPixels {
     /// Returns the sums over the first samples.
-    fn of(tile: &SampledTile, chosen: &[usize]) -> PartPixels {
+    fn chosen(tile: &SampledTile, chosen: &[usize]) -> PartPixels {
         PartPixels {
             sums: chosen.iter().map(|i| tile.sums[*i]).collect(),
             samples: chosen.iter().map(|i| tile.samples[*i]).collect(),

@@ -63,7 +63,7 @@ impl<'w> EyePass<'w> {
                 false => MAX_KNOWN,
             }
         };
-        self.visibility.of(point).iter().map(as_reflected).fold(f32::INFINITY, f32::min).min(MAX_KNOWN)
+        self.visibility.at_point(point).iter().map(as_reflected).fold(f32::INFINITY, f32::min).min(MAX_KNOWN)
     }
 
     /// Traces the eye rays of every pixel in the view's window.

@@ -107,7 +107,7 @@ impl VisibilitySamples {
 
     /// Returns the samples of a shading point.
     #[inline]
-    pub fn of(&self, point: usize) -> &[VisibilitySample] {
+    pub fn at_point(&self, point: usize) -> &[VisibilitySample] {
         &self.samples[self.range(point)]
     }
 

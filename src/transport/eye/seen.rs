@@ -189,14 +189,14 @@ impl FeatureSampler<'_> {
                 samplers[lane] = sampler;
             }
             let (valid, mut hits) = (first_lanes(count), Hits16::default());
-            let found = self.world.accel.closest_hit16(&rays, valid, true, &mut hits);
-            let surfaces = (found != 0).then(|| {
-                hits.repeat(found.trailing_zeros() as usize, !found);
+            let hit_lanes = self.world.accel.closest_hit16(&rays, valid, true, &mut hits);
+            let surfaces = (hit_lanes != 0).then(|| {
+                hits.repeat(hit_lanes.trailing_zeros() as usize, !hit_lanes);
                 self.world.surfaces(&hits)
             });
             for (lane, (pixel, _)) in packet.iter().enumerate().take(count) {
                 let ray = rays.get(lane);
-                let surface = surfaces.as_ref().filter(|_| found >> lane & 1 != 0).map(|s| s.get(lane));
+                let surface = surfaces.as_ref().filter(|_| hit_lanes >> lane & 1 != 0).map(|s| s.get(lane));
                 let seen = surface.map_or_else(SeenSurfaces::default, |surface| {
                     SeenSurfaces::new(self.world, &ray, cone, surface, &mut samplers[lane])
                 });

@@ -142,7 +142,7 @@ fn visibility_samples_carry_the_whole_light_of_each_pixel() {
     let mut sums = vec![Rgb::ZERO; 400];
     let mut samples = 0;
     for point in 0..pass.len() {
-        for sample in pass.visibility.of(point) {
+        for sample in pass.visibility.at_point(point) {
             sums[sample.pixel as usize] += sample.weight;
             samples += 1;
         }
@@ -196,7 +196,7 @@ fn check_weights(pass: EyePass, spp: u32, extra: bool) {
     assert_eq!(pass.chains.extra_samples > 0, extra);
     let mut sums = vec![Rgb::ZERO; 400];
     for point in 0..pass.len() {
-        for sample in pass.visibility.of(point) {
+        for sample in pass.visibility.at_point(point) {
             sums[sample.pixel as usize] += sample.weight;
         }
     }
@@ -223,7 +223,7 @@ fn passes_that_are_cancelled_have_no_points() {
             EyePass::trace(&world, &world.view, settings, &control)
         });
         assert_eq!(pass.len() > 0, pass.complete);
-        assert!((0..pass.len()).all(|point| !pass.visibility.of(point).is_empty()));
+        assert!((0..pass.len()).all(|point| !pass.visibility.at_point(point).is_empty()));
     }
 }
 
@@ -251,7 +251,7 @@ fn chains_follow_the_share_of_a_sharp_coat_on_a_base() {
     for point in 0..pass.len() {
         let behind = pass.points.geometry[point].position.z > 0.0;
         sums[usize::from(behind)] +=
-            pass.visibility.of(point).iter().map(|sample| sample.weight).sum::<Rgb>();
+            pass.visibility.at_point(point).iter().map(|sample| sample.weight).sum::<Rgb>();
     }
     let [front, behind] = sums.map(|sum| sum / (192.0 * 192.0));
     assert_near(front, Rgb::ONE);
@@ -267,7 +267,7 @@ fn a_crop_has_the_whole_pictures_merged_points_with_extra_samples_too() {
         assert!(pass.chains.extra_samples > 0);
         let mut points = Vec::new();
         for point in 0..pass.len() {
-            for sample in pass.visibility.of(point) {
+            for sample in pass.visibility.at_point(point) {
                 let [x, y] = window.film_pixel([sample.pixel % window.width, sample.pixel / window.width]);
                 let position = pass.points.geometry[point].position.to_array().map(f32::to_bits);
                 points.push(([x, y], position, sample.weight.to_array().map(f32::to_bits)));

@@ -31,9 +31,9 @@ pub(super) fn by_tiles<T: Clone + Default + Send>(
             let Some(first) = tile.next() else { return Vec::new() };
             look(first, tile.last().unwrap_or(first))
         };
-        let found: Vec<Vec<T>> = numbers.par_iter().one_by_one().map(look_at).collect();
-        for (tile, found) in numbers.iter().zip(found) {
-            for (pixel, [x, y]) in found.into_iter().zip(window.tile(*tile, TILE)) {
+        let tiles: Vec<Vec<T>> = numbers.par_iter().one_by_one().map(look_at).collect();
+        for (number, tile) in numbers.iter().zip(tiles) {
+            for (pixel, [x, y]) in tile.into_iter().zip(window.tile(*number, TILE)) {
                 pixels[(y * window.width + x) as usize] = pixel;
             }
         }

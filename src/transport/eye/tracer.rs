@@ -238,7 +238,7 @@ impl<'a, 'w> Tracer<'a, 'w> {
                     (own, rest) =
                         rest.split_at(rest.partition_point(|(path, _)| *path < ((i + 1) * n) as u32));
                     let index = chunk * together + i;
-                    let guide = ends.first_surfaces.as_ref().map_or_else(Guide::default, |first| first.of(i));
+                    let guide = ends.first_surfaces.as_ref().map_or_else(Guide::default, |first| first.at(i));
                     let PixelSums { all: sum, half, nonfinite } = sums;
                     each(
                         PixelSamples { index, first, sum, half, nonfinite, guide, ends: found, order: own },

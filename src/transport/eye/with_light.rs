@@ -21,9 +21,9 @@ impl<'w> EyePass<'w> {
         match direct {
             Some(direct) => {
                 let mut pass = EyePass::with_direct_light(world, view, settings, direct, control);
-                let found = pass.known.luminance();
-                pass.contributions.add(Contributions::PHOTONS, pass.chains.by_photons(found));
-                pass.contributions.rest("eye samples", found);
+                let luminance = pass.known.luminance();
+                pass.contributions.add(Contributions::PHOTONS, pass.chains.by_photons(luminance));
+                pass.contributions.rest("eye samples", luminance);
                 pass
             }
             None => {

@@ -37,7 +37,7 @@ struct PhotonVpls {
 }
 
 impl PhotonVpls {
-    fn of(hit: &PhotonHit) -> PhotonVpls {
+    fn left_by(hit: &PhotonHit) -> PhotonVpls {
         let photon = &hit.photon;
         let mut albedo = photon.albedo;
         let lobes: Box<[(LobeProfile, Rgb)]> = hit
@@ -80,9 +80,9 @@ pub fn indirect_vpls(
     // One edge ends at the eye, another joins VPL and receiver.
     let max_edges = max_depth.saturating_sub(2);
     let wanted = PhotonSettings { photons: settings.indirect, seen, max_edges, seed: settings.seed };
-    let (found, photons) = trace_in_parts(world, &wanted, control, PhotonVpls::of);
+    let (found, photons) = trace_in_parts(world, &wanted, control, PhotonVpls::left_by);
     let share = 1.0 / photons.paths.max(1) as f32;
-    let part = |found: Vec<PhotonVpls>| (!control.is_cancelled()).then(|| PartialVpls::of(found, share));
+    let part = |found: Vec<PhotonVpls>| (!control.is_cancelled()).then(|| PartialVpls::new(found, share));
     let parts: Vec<PartialVpls> = found.into_par_iter().one_by_one().map(part).while_some().collect();
     let mut diffuse = VplSet::new(VplKind::Oriented, Origin::Indirect);
     let mut lobed = VplSet::new(VplKind::Lobed, Origin::Indirect);
@@ -107,7 +107,7 @@ struct PartialVpls {
 
 impl PartialVpls {
     /// Converts the VPLs of photons, each of which carries a `share` of a path's light.
-    fn of(found: Vec<PhotonVpls>, share: f32) -> PartialVpls {
+    fn new(found: Vec<PhotonVpls>, share: f32) -> PartialVpls {
         let mut diffuse = VplSet::new(VplKind::Oriented, Origin::Indirect);
         let mut lobed = Vec::new();
         diffuse.reserve(found.len());

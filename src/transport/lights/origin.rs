@@ -61,7 +61,7 @@ impl DirectIndirect<bool> {
 
     /// Returns the one origin for which it holds; `None` if it holds for both or neither.
     #[inline]
-    pub fn only(self) -> Option<Origin> {
+    pub fn single_origin(self) -> Option<Origin> {
         match (self.direct, self.indirect) {
             (true, false) => Some(Origin::Direct),
             (false, true) => Some(Origin::Indirect),

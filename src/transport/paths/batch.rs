@@ -89,14 +89,14 @@ impl Batch {
             let mut packet = self.packets[index].clone();
             let valid =
                 if depth == 1 { self.first[index].0 } else { first_lanes(self.count - index * LANES) };
-            let found = self.hit(world, &packet, valid, depth, policy, &mut hits);
-            if found == 0 {
+            let hit_lanes = self.hit(world, &packet, valid, depth, policy, &mut hits);
+            if hit_lanes == 0 {
                 continue;
             }
-            let surfaces = covered(world, &packet, &mut hits, found);
-            packet.arrive(world, &surfaces, found, policy, &mut self.radiance);
+            let surfaces = covered(world, &packet, &mut hits, hit_lanes);
+            packet.arrive(world, &surfaces, hit_lanes, policy, &mut self.radiance);
             let edge = Edge { depth, max_depth, kept: &mut kept };
-            self.scatter(world, &mut packet, Hit { surfaces: &surfaces, found }, edge, policy, counts);
+            self.scatter(world, &mut packet, Hit { surfaces: &surfaces, hit_lanes }, edge, policy, counts);
         }
         self.finish(world, Edge { depth, max_depth, kept: &mut kept }, policy, counts);
     }
@@ -117,17 +117,17 @@ impl Batch {
         for index in 0..self.packets.len() {
             let mut packet = self.packets[index].clone();
             let (valid, pixel) = self.first[index];
-            let found = self.hit(world, &packet, valid, 1, policy, &mut hits);
-            if found == 0 {
+            let hit_lanes = self.hit(world, &packet, valid, 1, policy, &mut hits);
+            if hit_lanes == 0 {
                 continue;
             }
-            let surfaces = covered(world, &packet, &mut hits, found);
-            packet.arrive(world, &surfaces, found, policy, &mut self.radiance);
+            let surfaces = covered(world, &packet, &mut hits, hit_lanes);
+            packet.arrive(world, &surfaces, hit_lanes, policy, &mut self.radiance);
             if max_depth <= 1 {
                 continue;
             }
-            let grouped = found & world.with_densities_alone(&surfaces.mesh);
-            for lane in lanes_in(found & !grouped) {
+            let grouped = hit_lanes & world.with_densities_alone(&surfaces.mesh);
+            for lane in lanes_in(hit_lanes & !grouped) {
                 if single.push(&packet, &hits, lane) {
                     let edge = Edge { depth: 1, max_depth, kept: &mut kept };
                     self.scatter_single(world, &mut single, edge, policy, counts);
@@ -167,14 +167,14 @@ impl Batch {
         policy: &R,
         hits: &mut Hits16,
     ) -> u16 {
-        let found = world.accel.closest_hit16(&packet.rays, valid, depth == 1, hits);
+        let hit_lanes = world.accel.closest_hit16(&packet.rays, valid, depth == 1, hits);
         let hidden = match &world.scene {
             scene if scene.hides_background => packet.on_eye_ray(depth),
             scene if scene.hides_emitters && depth == 1 => u16::MAX,
             _ => 0,
         };
-        self.escape(world, packet, valid & !found & !hidden, policy);
-        found
+        self.escape(world, packet, valid & !hit_lanes & !hidden, policy);
+        hit_lanes
     }
 
     /// Shades hits that were gathered.
@@ -186,10 +186,10 @@ impl Batch {
         policy: &mut R,
         counts: &mut RayCounts,
     ) {
-        let found = first_lanes(mem::take(&mut single.count));
-        if found != 0 {
-            let surfaces = covered(world, &single.packet, &mut single.hits, found);
-            let hit = Hit { surfaces: &surfaces, found };
+        let hit_lanes = first_lanes(mem::take(&mut single.count));
+        if hit_lanes != 0 {
+            let surfaces = covered(world, &single.packet, &mut single.hits, hit_lanes);
+            let hit = Hit { surfaces: &surfaces, hit_lanes };
             self.scatter(world, &mut single.packet, hit, edge, policy, counts);
         }
     }
@@ -199,12 +199,12 @@ impl Batch {
         &mut self,
         world: &'w World,
         packet: &mut Packet,
-        Hit { surfaces, found }: Hit,
+        Hit { surfaces, hit_lanes }: Hit,
         edge: Edge,
         policy: &mut R,
         counts: &mut RayCounts,
     ) {
-        let mut followed = found & packet.followed();
+        let mut followed = hit_lanes & packet.followed();
         followed &= !packet.at(PathStage::Scattered) | world.specular.lanes(&surfaces.mesh);
         if followed == 0 || edge.depth >= edge.max_depth {
             return;
@@ -358,10 +358,10 @@ impl SingleHits {
     }
 }
 
-/// Surfaces that a packet has hit in the lanes of `found`.
+/// Surfaces that a packet has hit in the lanes of `hit_lanes`.
 struct Hit<'a> {
     surfaces: &'a Surfaces16,
-    found: u16,
+    hit_lanes: u16,
 }
 
 /// Number of the edge that is traced, and of paths stored so far behind it.
@@ -384,12 +384,12 @@ fn are_coherent(world: &World, depth: u32) -> bool {
     depth == 1 && world.emitters.send_from_few_directions()
 }
 
-/// Returns the surfaces that a packet has hit in the lanes of `found`, with the footprints of its rays.
-fn covered(world: &World, packet: &Packet, hits: &mut Hits16, found: u16) -> Surfaces16 {
-    hits.repeat(found.trailing_zeros() as usize, !found);
+/// Returns the surfaces that a packet has hit in the lanes of `hit_lanes`, with the footprints of its rays.
+fn covered(world: &World, packet: &Packet, hits: &mut Hits16, hit_lanes: u16) -> Surfaces16 {
+    hits.repeat(hit_lanes.trailing_zeros() as usize, !hit_lanes);
     let directions = packet.rays.directions();
     let mut surfaces = world.surfaces_along(hits, &directions);
-    world.cover(&mut surfaces, &directions, found, |lane| packet.cones[lane]);
+    world.cover(&mut surfaces, &directions, hit_lanes, |lane| packet.cones[lane]);
     surfaces
 }
 

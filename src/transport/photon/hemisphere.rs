@@ -64,8 +64,8 @@ pub fn gather(
                 let direction = frame.to_world(local);
                 rays.set(lane, &shadow::ray_from(point.position, point.geometric_normal, direction));
             }
-            let found = light.along16(&rays, u16::MAX, true, block_seed, counts);
-            for (lane, IncomingRadiance { radiance, distance, normal }) in found.into_iter().enumerate() {
+            let incoming = light.along16(&rays, u16::MAX, true, block_seed, counts);
+            for (lane, IncomingRadiance { radiance, distance, normal }) in incoming.into_iter().enumerate() {
                 let (ring, sector) = stratum(lane);
                 let place = strata.place(ring, sector);
                 let passed = match coat {

@@ -198,9 +198,9 @@ impl IndirectLight<'_> {
         let emitters = &self.world.emitters;
         let Some(environment) = emitters.environment.as_ref().filter(|_| lanes != 0) else { return };
         let choice = emitters.environment_choice(near.receivers());
-        let found = environment.radiance_pdf16(&rays.directions(), lanes, None);
+        let radiance_pdfs = environment.radiance_pdf16(&rays.directions(), lanes, None);
         for lane in lanes_in(lanes) {
-            let (light, other) = found[lane];
+            let (light, other) = radiance_pdfs[lane];
             let weight = power_heuristic(pdf[lane], other * choice[lane]);
             radiance[lane] += near.throughput.get(lane) * light * weight;
         }

@@ -54,8 +54,8 @@ pub fn reflected(
             used += 1;
         }
         counts.own_rays += used as u64;
-        let found = light.along16(&rays, first_lanes(used), false, hash(packet, seed), counts);
-        sum += found.iter().zip(weights).map(|(seen, weight)| seen.radiance * weight).sum::<Rgb>();
+        let incoming = light.along16(&rays, first_lanes(used), false, hash(packet, seed), counts);
+        sum += incoming.iter().zip(weights).map(|(seen, weight)| seen.radiance * weight).sum::<Rgb>();
     }
     sum / (packets * LANES as u32) as f32
 }

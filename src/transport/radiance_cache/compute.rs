@@ -181,7 +181,7 @@ impl<'w> RecordWorkspace<'w> {
         let receivers = &*receivers;
         let Candidate { missing, cell, .. } = group[0];
         let epsilon = s.cells.epsilon(s.settings.epsilon, cell);
-        let settings = CutSettings { epsilon, origin: missing.only(), ..*s.cut };
+        let settings = CutSettings { epsilon, origin: missing.single_origin(), ..*s.cut };
         let log = s.needs_occluders().then(|| OccluderLog::new(world));
         let places: Vec<_> = group.iter().map(|candidate| (candidate.point, candidate.sample)).collect();
         let (cut, mut hessians) = match &log {

@@ -116,12 +116,12 @@ impl<'a> CacheFrame<'a> {
     /// Shrinks footprints at visible discontinuities; returns false if there are none.
     fn adapt(&mut self, records: &mut Records, settings: &CacheSettings, stats: &mut Stats) -> bool {
         stats.time(Stage::Splat, || {
-            let found = adapt::discontinuities(&self.targets, records, &self.splats);
-            let changed = adapt::shrink(&self.targets, records, &found, settings);
+            let discontinuities = adapt::discontinuities(&self.targets, records, &self.splats);
+            let changed = adapt::shrink(&self.targets, records, &discontinuities, settings);
             for origin in Origin::ALL {
                 self.splats[origin].renew(&self.targets, &records[origin], &changed);
             }
-            self.discontinuities.push(found);
+            self.discontinuities.push(discontinuities);
             changed.contains(&true)
         })
     }

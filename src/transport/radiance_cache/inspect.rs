@@ -133,7 +133,7 @@ fn blank(eye: &EyePass) -> Image {
 
 /// Returns the pixels that see a shading point.
 fn pixels(eye: &EyePass, point: usize) -> impl Iterator<Item = usize> {
-    eye.visibility.of(point).iter().map(|seen| seen.pixel as usize)
+    eye.visibility.at_point(point).iter().map(|seen| seen.pixel as usize)
 }
 
 fn footprint(record: &Record) -> Rgb {

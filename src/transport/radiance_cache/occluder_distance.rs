@@ -40,8 +40,8 @@ pub struct OccluderDistances(Vec<(u32, F32x16)>);
 impl OccluderDistances {
     /// Returns the distance from a lane to the occluder of a representative; infinite if there is none.
     pub fn get(&self, node: &LightNode, lane: usize) -> f32 {
-        let found = self.0.binary_search_by_key(&(node.representative() as u32), |entry| entry.0);
-        found.map_or(f32::INFINITY, |i| self.0[i].1[lane])
+        let place = self.0.binary_search_by_key(&(node.representative() as u32), |entry| entry.0);
+        place.map_or(f32::INFINITY, |i| self.0[i].1[lane])
     }
 }
 

@@ -47,7 +47,7 @@ impl BandedLight {
     pub(super) fn new(eye: &EyePass, reflected: impl Iterator<Item = Reflected>, band: usize) -> BandedLight {
         let (mut all, mut starts, mut nonfinite) = (Vec::new(), vec![0; BANDS + 1], 0);
         for Reflected { point, origin, radiance } in reflected {
-            for seen in eye.visibility.of(point as usize) {
+            for seen in eye.visibility.at_point(point as usize) {
                 let light = seen.weight * radiance;
                 if light.is_finite() {
                     starts[seen.pixel as usize / band + 1] += 1;
@@ -70,7 +70,7 @@ impl BandedLight {
     }
 
     /// Returns the light of a band, in the order of points.
-    fn of(&self, number: usize) -> &[PixelLight] {
+    fn band(&self, number: usize) -> &[PixelLight] {
         &self.light[self.starts[number] as usize..self.starts[number + 1] as usize]
     }
 }
@@ -83,7 +83,7 @@ pub(super) fn add_by_band(
     wanted: impl Fn(&PixelLight) -> bool + Sync,
 ) {
     image.pixels.par_chunks_mut(band).enumerate().for_each(|(number, pixels)| {
-        for light in runs.iter().flat_map(|run| run.of(number)).filter(|light| wanted(light)) {
+        for light in runs.iter().flat_map(|run| run.band(number)).filter(|light| wanted(light)) {
             pixels[light.pixel as usize - number * band] += light.light;
         }
     });
@@ -112,7 +112,7 @@ mod tests {
         for wanted in [None, Some(Origin::Direct)] {
             let mut expected = Image::new(33, 33);
             for Reflected { point, origin, radiance } in &all {
-                let seen = eye.visibility.of(*point as usize).iter();
+                let seen = eye.visibility.at_point(*point as usize).iter();
                 let light = seen.map(|seen| (seen.pixel as usize, seen.weight * *radiance));
                 for (pixel, light) in light.filter(|(_, light)| light.is_finite()) {
                     if origin == &wanted {

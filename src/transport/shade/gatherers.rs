@@ -85,8 +85,8 @@ impl<'w> Gatherers<'w> {
         shaded: &mut impl FnMut(ShadingTask, Shaded),
     ) -> bool {
         self.receivers.set(patch.iter().map(|task| task.receiver(points)));
-        let found = self.sampled.gather(&c.transfer, rays, &self.receivers, settings);
-        let Some(mut sum) = found else { return false };
+        let gathered = self.sampled.gather(&c.transfer, rays, &self.receivers, settings);
+        let Some(mut sum) = gathered else { return false };
         if let Some(c) = &c.compensation {
             let origin = settings.cut.origin;
             self.compensator.anchors(c, origin, &self.receivers, &mut sum, Some(settings.seed));

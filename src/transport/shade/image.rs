@@ -98,6 +98,6 @@ impl ShadedImage {
 /// Returns the light that a shading point sends to pixels, by their indices. Light that is not finite is left out.
 fn seen_by(eye: &EyePass, point: usize, radiance: Rgb) -> impl Iterator<Item = (usize, Rgb)> {
     let light =
-        eye.visibility.of(point).iter().map(move |seen| (seen.pixel as usize, seen.weight * radiance));
+        eye.visibility.at_point(point).iter().map(move |seen| (seen.pixel as usize, seen.weight * radiance));
     light.filter(|(_, light)| light.is_finite())
 }

@@ -103,8 +103,8 @@ pub(super) fn sample_pixels(
         });
         (luminances, counts)
     };
-    let found: Vec<([Vec<f64>; 2], RayCounts)> = groups.par_iter().one_by_one().map(sample).collect();
-    let rays = found.iter().map(|(_, counts)| counts.rays + counts.shadow_rays).sum();
-    let luminances = [0, 1].map(|set| found.iter().flat_map(|(sets, _)| &sets[set]).copied().collect());
+    let groups: Vec<([Vec<f64>; 2], RayCounts)> = groups.par_iter().one_by_one().map(sample).collect();
+    let rays = groups.iter().map(|(_, counts)| counts.rays + counts.shadow_rays).sum();
+    let luminances = [0, 1].map(|set| groups.iter().flat_map(|(sets, _)| &sets[set]).copied().collect());
     (!control.is_cancelled()).then(|| SampledPixels::new(luminances, rays, 0))
 }

@@ -113,8 +113,8 @@ impl Renderer for Settings {
             learned: known.light.as_ref(),
             path_ends: None,
         };
-        let found = EyePass::pilot(world, view, settings, sources, groups, control);
-        let EyePilot { luminances, photons, sampled, before } = found;
+        let pilot = EyePass::pilot(world, view, settings, sources, groups, control);
+        let EyePilot { luminances, photons, sampled, before } = pilot;
         let luminances = luminances.map(|by_group| by_group.into_iter().flatten().map(f64::from).collect());
         let before = before.rays + before.shadow_rays + rays + shadow_rays;
         let pixels = SampledPixels::new(luminances, sampled.rays + sampled.shadow_rays, before);

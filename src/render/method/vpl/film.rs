@@ -189,7 +189,7 @@ impl Resolved {
     /// Divides the light of a point.
     fn add(&mut self, point: usize, light: &Interpolated) {
         let &Interpolated { base, lobe, baseline_luminance, remainder } = light;
-        let lobe_origin = remainder.map(|part| part != Remainder::All).only();
+        let lobe_origin = remainder.map(|part| part != Remainder::All).single_origin();
         let parts = Origin::ALL.map(|origin| (Some(origin), base[origin]));
         for (origin, radiance) in parts.into_iter().chain([(lobe_origin, lobe)]) {
             if radiance != Rgb::ZERO {
@@ -199,7 +199,7 @@ impl Resolved {
         for (part, lobe_only) in [(Remainder::All, false), (Remainder::Lobe, true)] {
             let remaining = remainder.map(|remainder| remainder == part);
             if remaining.any() {
-                let (point, origin) = (point as u32, remaining.only());
+                let (point, origin) = (point as u32, remaining.single_origin());
                 self.tasks.push(ShadingTask { point, lobe_only, origin, baseline_luminance });
             }
         }

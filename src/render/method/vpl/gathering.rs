@@ -82,10 +82,10 @@ impl GatheringSettings {
             }
             (Reflected { point, origin: Some(Origin::Indirect), radiance }, counts)
         };
-        let found: Vec<(Reflected, GatherCounts)> = tasks.par_iter().map(gather).collect();
+        let gathered: Vec<(Reflected, GatherCounts)> = tasks.par_iter().map(gather).collect();
         let mut counts = *source.counts();
-        found.iter().for_each(|(_, used)| counts += *used);
-        (found.into_iter().map(|(light, _)| light).collect(), counts)
+        gathered.iter().for_each(|(_, used)| counts += *used);
+        (gathered.into_iter().map(|(light, _)| light).collect(), counts)
     }
 }
 

@@ -39,7 +39,7 @@ impl ActiveCluster {
 pub fn build(mut primitives: Vec<Primitive>, c_sq: f32, control: &Control) -> Option<Topology> {
     sort_along_curve(&mut primitives, c_sq);
     let leaf = |(i, r): (usize, &Primitive)| ActiveCluster {
-        bounds: PrimitiveBounds::of(r),
+        bounds: PrimitiveBounds::around_one(r),
         intensity: f64::from(r.0[LUMINANCE]),
         id: i as u32,
     };

@@ -70,7 +70,7 @@ impl PrimitiveBounds {
 
     /// Creates the box around one primitive.
     #[inline]
-    pub fn of(r: &Primitive) -> PrimitiveBounds {
+    pub fn around_one(r: &Primitive) -> PrimitiveBounds {
         PrimitiveBounds { min: r.0, max: r.0 }
     }
 
@@ -78,7 +78,7 @@ impl PrimitiveBounds {
     pub fn around<'a>(primitives: impl Iterator<Item = &'a Primitive>) -> PrimitiveBounds {
         let mut b = PrimitiveBounds::EMPTY;
         for r in primitives {
-            b.add(&PrimitiveBounds::of(r));
+            b.add(&PrimitiveBounds::around_one(r));
         }
         b
     }

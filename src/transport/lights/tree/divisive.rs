@@ -55,7 +55,7 @@ impl BinUnion {
 
     #[inline]
     fn add_one(&mut self, r: &Primitive) {
-        self.add(&PrimitiveBounds::of(r), luminance(r));
+        self.add(&PrimitiveBounds::around_one(r), luminance(r));
     }
 }
 
@@ -187,7 +187,7 @@ impl Binning {
 
     fn fill<'a>(&self, primitives: impl Iterator<Item = &'a Primitive>, bins: &mut Bins) {
         for r in primitives {
-            let (bounds, luminance) = (PrimitiveBounds::of(r), luminance(r));
+            let (bounds, luminance) = (PrimitiveBounds::around_one(r), luminance(r));
             let mut bin = [0; 8];
             for (d, bin) in bin.iter_mut().enumerate() {
                 *bin = self.place(r, d).to_bits() >> (f32::MANTISSA_DIGITS - 1 - BINS.ilog2());

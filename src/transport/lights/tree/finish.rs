@@ -131,7 +131,7 @@ impl Finisher<'_> {
         let intensity = self.set.intensities[primitive.index() as usize];
         let representative = self.first_vpl + place;
         *node = LightNode::new(intensity, representative, self.set.kind, self.set.origin);
-        let bounds = PrimitiveBounds::of(primitive);
+        let bounds = PrimitiveBounds::around_one(primitive);
         self.set_box(node, &bounds);
         if self.has_cones() {
             self.set_cone(node, primitive.normal(), std::slice::from_ref(primitive));

@@ -110,7 +110,7 @@ struct Rates {
 impl Samples {
     /// Returns the numbers of samples for points that gather these `totals` of luminance, by lane; `None` if a cut
     /// takes less time, or if a total is not finite.
-    fn of(&self, receivers: &ReceiverPacket, totals: &F32x16) -> Option<F32x16> {
+    fn numbers(&self, receivers: &ReceiverPacket, totals: &F32x16) -> Option<F32x16> {
         let mut numbers = [0.0; LANES];
         for lane in lanes_in(receivers.valid) {
             let share = totals[lane] / (totals[lane] + receivers.baseline[lane]);
@@ -140,7 +140,7 @@ impl SampledCut {
         let capped = PacketRefinement::new(&mut self.cut, transfer, &AllVisible, receivers, &coarse).run();
         self.counts.bounds += std::mem::take(&mut self.cut.counts).bounds;
         let totals = self.weigh(transfer);
-        let numbers = samples.of(receivers, &totals)?;
+        let numbers = samples.numbers(receivers, &totals)?;
         self.counts.capped += receivers.len() as u64 * u64::from(capped);
         self.counts.cuts += receivers.len() as u64;
         lanes_in(receivers.valid).for_each(|lane| self.visible[lane].clear());
