@@ -162,7 +162,7 @@ fn drawn_light_is_carried_from_frame_to_frame() {
     }
     let [rays, fewer] = [0, 1].map(|i| count(&last[i], "Eye/shadow rays"));
     assert!(fewer * 3 < rays * 2, "{fewer} shadow rays, {rays} by all samples");
-    let method = Method::Path(path::Settings { spp: 1024, ..Default::default() });
+    let method = Method::Path(path::Settings { spp: 512, ..Default::default() });
     let reference = frame(&session, &views[FRAMES - 1], method, false).film.color;
     let error = |frame: &RenderedFrame| {
         compare(&frame.film.color, &reference, Variances::default()).unwrap().rel_mse_trimmed.sqrt()

@@ -14,7 +14,7 @@ use lightsplat::method::Method;
 use std::ops::Range;
 
 /// Numbers of seeds of each picture: at first, and of those that seem to be wrong by the ones before.
-const SEEDS: [u32; 3] = [4, 40, 400];
+const SEEDS: [u32; 4] = [4, 12, 40, 400];
 /// Deviation in standard errors from which on more seeds are taken, and by the most seeds is a defect.
 const MAX_DEVIATION: f64 = 5.0;
 /// Difference relative to the picture that is none: rounding, and what depends on the order of surfaces.
