@@ -39,7 +39,7 @@ impl<'w> MergedPoint<'w> {
     pub fn new(end: &ChainEnd<'w>, spacing: f32, edges: u32) -> Option<MergedPoint<'w>> {
         let (geometry, surface) = shading_point(&end.surface, end.bsdf, end.out, spacing, edges)?;
         let point = MergedPoint {
-            geometry,
+            geometry: PointGeometry { is_chained: end.depth > 1, ..geometry },
             surface,
             weight: end.throughput,
             path_class: end.path_class,

@@ -25,7 +25,9 @@ pub struct PointGeometry {
     pub normal: Vec3,
     /// Coat that light has to pass to reach the base (see [`Bsdf::coat`]); 0 without a coat. Coats beyond the largest
     /// number count as one.
-    pub coat: u16,
+    pub coat: u8,
+    /// True if the eye sees the point by mirrors, glass or sharp lobes, or through gaps.
+    pub is_chained: bool,
     /// Maximum number of edges that light may take to the point; `u16::MAX` if light passes no sheets.
     pub edges: u16,
 }
@@ -56,8 +58,10 @@ pub fn shading_point<'w>(
     let normal = if front { surface.frame.normal } else { -surface.frame.normal };
     // Foreshortening is limited, so that grazing samples do not stand for whole floors.
     let spacing = spacing / normal.dot(out).max(0.05).sqrt();
-    let [coat, edges] = [bsdf.coat(), edges].map(|number| u16::try_from(number).unwrap_or(u16::MAX));
-    let geometry = PointGeometry { position: surface.position, spacing, normal, coat, edges };
+    let coat = u8::try_from(bsdf.coat()).unwrap_or(u8::MAX);
+    let edges = u16::try_from(edges).unwrap_or(u16::MAX);
+    let geometry =
+        PointGeometry { position: surface.position, spacing, normal, coat, is_chained: false, edges };
     let finite = surface.position.is_finite() && spacing.is_finite();
     finite.then_some((geometry, PointSurface { bsdf, geometric_normal: surface.normal, out }))
 }

@@ -28,7 +28,7 @@ pub static MATERIALS: LazyLock<Materials> = LazyLock::new(|| Materials::new(&SCE
 
 /// Returns a shading point on a floor with the normal z.
 pub fn point(position: Vec3) -> PointGeometry {
-    PointGeometry { position, spacing: 0.1, normal: Vec3::Z, coat: 0, edges: u16::MAX }
+    PointGeometry { position, spacing: 0.1, normal: Vec3::Z, coat: 0, is_chained: false, edges: u16::MAX }
 }
 
 /// Shading points on a floor, in the order of their index.

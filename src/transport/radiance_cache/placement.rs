@@ -273,6 +273,26 @@ mod tests {
     }
 
     #[test]
+    fn points_seen_by_mirrors_mask_no_errors_where_others_are_seen() {
+        let mut floor = Floor::grid(16);
+        floor.points.geometry.iter_mut().skip(1).step_by(2).for_each(|point| point.is_chained = true);
+        let all = 0..floor.points.len();
+        // Of a pixel's light, such a point gives so little that it may have any error.
+        let known = |floor: &Floor| {
+            let is_chained = |i: usize| floor.points.geometry[i].is_chained;
+            let targets = floor.targets().with_baseline(|i| if is_chained(i) { 1e30 } else { 1.0 });
+            targets.darkest_baseline(all.clone())
+        };
+        let some = known(&floor);
+        floor.points.geometry.iter_mut().for_each(|point| point.is_chained = false);
+        assert_eq!(some, floor.targets().with_baseline(|_| 1.0).darkest_baseline(all.clone()));
+        // If there are no others, one of them with little light is enough.
+        floor.points.geometry.iter_mut().for_each(|point| point.is_chained = true);
+        let targets = floor.targets().with_baseline(|i| if i % 32 == 0 { 1.0 } else { 1e30 });
+        assert!((targets.darkest_baseline(all) / (32.0 * some) - 1.0).abs() < 1e-5);
+    }
+
+    #[test]
     fn samples_that_records_cannot_light_are_no_candidates() {
         let floor = Floor::grid(8);
         let mut targets = floor.targets();

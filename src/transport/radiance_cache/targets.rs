@@ -114,12 +114,27 @@ impl<'a> Targets<'a> {
     }
 
     /// Divides a range of points into parts and returns the least of the parts' mean known irradiances.
+    ///
+    /// Points that the eye sees by mirrors give little of their pixels' light, so that they allow large errors. They
+    /// count only where no other points are, by the mean error relative to their pixels.
     pub fn darkest_baseline(&self, range: Range<usize>) -> f32 {
-        let Some(baseline) = self.baseline.get(range).filter(|baseline| !baseline.is_empty()) else {
+        let Some(baseline) = self.baseline.get(range.clone()).filter(|baseline| !baseline.is_empty()) else {
             return 0.0;
         };
-        let mean = |part: &[f32]| part.iter().sum::<f32>() / part.len() as f32;
-        baseline.chunks(baseline.len().div_ceil(PARTS)).map(mean).fold(f32::INFINITY, f32::min)
+        let length = baseline.len().div_ceil(PARTS);
+        let points = self.points.geometry[range].chunks(length);
+        let mean = |(part, points): (&[f32], &[PointGeometry])| {
+            let (mut sum, mut count) = (0.0, 0.0);
+            for (known, _) in part.iter().zip(points).filter(|(_, point)| !point.is_chained) {
+                sum += known;
+                count += 1.0;
+            }
+            match count > 0.0 {
+                true => sum / count,
+                false => part.len() as f32 / part.iter().map(|known| known.recip()).sum::<f32>(),
+            }
+        };
+        baseline.chunks(length).zip(points).map(mean).fold(f32::INFINITY, f32::min)
     }
 
     /// Iterates over the geometry of a range of points and the bands that they need.

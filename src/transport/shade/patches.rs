@@ -110,7 +110,14 @@ mod tests {
         let mut points = ShadingPoints::default();
         for i in 0..500 {
             let (position, normal) = (owen_sobol_2d(i, 3).extend(0.0), uniform_sphere(owen_sobol_2d(i, 5)));
-            let geometry = PointGeometry { position, spacing: 0.01, normal, coat: 0, edges: u16::MAX };
+            let geometry = PointGeometry {
+                position,
+                spacing: 0.01,
+                normal,
+                coat: 0,
+                is_chained: false,
+                edges: u16::MAX,
+            };
             points.geometry.push(geometry);
             let bsdf = bsdfs[usize::from(i % 5 == 0) + usize::from(i % 10 == 0)];
             points.surfaces.push(&PointSurface { bsdf, geometric_normal: normal, out: normal });
