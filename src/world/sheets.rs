@@ -6,7 +6,7 @@
 
 use super::World;
 use crate::material::LastStraight;
-use base::math::{Rgb, Vec3x16, lanes_in};
+use base::math::{LANES, Rgb, Vec3x16, lanes_in};
 use embree::{Hit, Ray, Rays16};
 use glam::{Vec2, Vec3};
 
@@ -187,6 +187,14 @@ impl World {
     #[inline]
     pub fn behind_hidden(&self, ray: Ray) -> Ray {
         if !self.scene.hides_emitters { ray } else { self.behind_emitters(ray) }
+    }
+
+    /// Replaces camera rays by their rests behind the emitters that are hidden from them.
+    #[inline]
+    pub fn put_behind_hidden(&self, rays: &mut Rays16) {
+        if self.scene.hides_emitters {
+            (0..LANES).for_each(|i| rays.set(i, &self.behind_emitters(rays.get(i))));
+        }
     }
 
     /// Returns the rest of a ray behind the emitters in front.

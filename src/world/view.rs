@@ -4,11 +4,11 @@
 //! number of views.
 
 use base::film::{CameraMatrices, Window};
-use base::math::Cone;
+use base::math::{Cone, LANES, U32x16, Vec2x16};
 use base::sampling::{Sampler, hash};
-use embree::Ray;
+use embree::{Ray, Rays16};
 use glam::{DVec3, Vec2, Vec3};
-use scene::{Camera, Cameras, Projection};
+use scene::{Camera, Cameras, PixelFilter, Projection};
 
 /// Maximum number of pixels rendered at once (16384 × 65536), which bounds the memory.
 const MAX_PIXELS: u64 = 1 << 30;
@@ -109,7 +109,7 @@ impl View {
     }
 
     /// Returns the ray of a sample of the pixel (see [`View::primary_ray`]), through a sampled point of the lens.
-    #[inline]
+    #[inline(always)]
     pub fn sample_ray(&self, pixel: [u32; 2], jitter: Vec2, seed: u32, sample: u32) -> Ray {
         let lens = match self.camera.projection {
             Projection::Lens { .. } => {
@@ -121,8 +121,33 @@ impl View {
         self.ray(pixel, jitter, lens)
     }
 
+    /// Returns the rays of sixteen samples (see [`View::sample_ray`]).
+    #[inline(never)]
+    pub fn sample_rays(
+        &self,
+        pixels: &[[u32; 2]; LANES],
+        jitter: &Vec2x16,
+        seeds: &U32x16,
+        samples: &U32x16,
+    ) -> Rays16 {
+        let mut rays = Rays16::default();
+        let mut set = |view: &View, i: usize| {
+            rays.set(i, &view.sample_ray(pixels[i], jitter.get(i), seeds[i], samples[i]));
+        };
+        let camera = &self.camera;
+        if camera.projection == Projection::Pinhole && camera.filter == PixelFilter::Box {
+            // With these constants, the loop becomes vector code.
+            let camera = Camera { projection: Projection::Pinhole, filter: PixelFilter::Box, ..*camera };
+            let view = View { camera, ..*self };
+            (0..LANES).for_each(|i| set(&view, i));
+        } else {
+            (0..LANES).for_each(|i| set(self, i));
+        }
+        rays
+    }
+
     /// Returns the ray through a pixel and a point of the lens.
-    #[inline]
+    #[inline(always)]
     fn ray(&self, [x, y]: [u32; 2], jitter: Vec2, lens: Vec2) -> Ray {
         let camera = &self.camera;
         let place = camera.filter.place(jitter);
@@ -276,6 +301,32 @@ mod tests {
             });
             assert!((image[0] / image[3] * 40.0 - f64::from(pixel[0]) - 0.5).abs() < 1e-4, "{image:?}");
             assert!((image[1] / image[3] * 30.0 - f64::from(pixel[1]) - 0.5).abs() < 1e-4, "{image:?}");
+        }
+    }
+
+    #[test]
+    fn rays_of_sixteen_samples_are_the_rays_of_each() {
+        let seeds: U32x16 = std::array::from_fn(|i| 7 * i as u32);
+        let samples: U32x16 = std::array::from_fn(|i| 5 + i as u32);
+        let pixels: [[u32; 2]; LANES] = std::array::from_fn(|i| [i as u32 % 8, i as u32 / 4]);
+        let mut jitter = Vec2x16::default();
+        (0..LANES).for_each(|i| jitter.set(i, Vec2::new(0.06 * i as f32, 1.0 - 0.03 * i as f32)));
+        let lens = Projection::Lens { radius: 0.1, distance: 2.0 };
+        let turned = Camera {
+            forward: Vec3::new(0.6, 0.0, -0.8),
+            right: Vec3::new(0.8, 0.0, 0.6),
+            ..Camera::default()
+        };
+        for projection in [Projection::Pinhole, lens, Projection::Parallel] {
+            for filter in [PixelFilter::Box, PixelFilter::TENT] {
+                let camera = Camera { projection, filter, near: 0.1, far: 9.0, ..turned };
+                let view = View::whole(camera, [8, 4]);
+                let rays = view.sample_rays(&pixels, &jitter, &seeds, &samples);
+                for i in 0..LANES {
+                    let ray = view.sample_ray(pixels[i], jitter.get(i), seeds[i], samples[i]);
+                    assert_eq!(format!("{:?}", rays.get(i)), format!("{ray:?}"));
+                }
+            }
         }
     }
 

@@ -11,7 +11,7 @@
 use super::estimand::pixel_seed;
 use base::math::{LANES, first_lanes};
 use base::sampling::Samplers16;
-use embree::{Hits16, Rays16};
+use embree::Hits16;
 use glam::Vec3;
 use std::ops::Range;
 use world::World;
@@ -92,11 +92,8 @@ impl<'a> Coverage<'a> {
         let seed = pixel_seed(pixel, self.seed);
         let index = std::array::from_fn(|lane| first.wrapping_add(lane as u32));
         let jitter = Samplers16 { seed: [seed; LANES], index }.point(1);
-        let mut rays = Rays16::default();
-        for (lane, ray) in index.iter().enumerate() {
-            let ray = self.view.sample_ray(pixel, jitter.get(lane), self.seed, *ray);
-            rays.set(lane, &self.world.behind_hidden(ray));
-        }
+        let mut rays = self.view.sample_rays(&[pixel; LANES], &jitter, &[self.seed; LANES], &index);
+        self.world.put_behind_hidden(&mut rays);
         let mut hits = Hits16::default();
         let met = self.world.accel.closest_hit16(&rays, first_lanes(LANES), true, &mut hits);
         let mut last = None;

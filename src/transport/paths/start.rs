@@ -5,7 +5,6 @@ use super::estimand::{Estimand, pixel_seed};
 use super::pixel_order::sequence;
 use base::math::LANES;
 use base::sampling::Samplers16;
-use embree::Rays16;
 use world::World;
 use world::view::View;
 
@@ -54,12 +53,12 @@ pub fn start(
         if count == 0 {
             return;
         }
-        let (mut pixels, mut numbers) = ([[0; 2]; LANES], [[0; 2]; LANES]);
+        let (mut pixels, mut seeds, mut numbers) = ([[0; 2]; LANES], [0; LANES], [0; LANES]);
         for (i, PathStart { pixel, position, seed, .. }) in starts.into_iter().enumerate() {
             samplers.seed[i] = pixel_seed(pixel, seed);
             samplers.index[i] = position;
             pixels[i] = pixel;
-            numbers[i] = estimand.numbers(seed, position).into();
+            (seeds[i], numbers[i]) = estimand.numbers(seed, position);
         }
         let mut jitter = samplers.point(1);
         let pixel_seeds = samplers.seed;
@@ -72,13 +71,8 @@ pub fn start(
                 _ => jitter.set(i, estimand.eye_sampler(pixel, seed, sample).1),
             }
         }
-        let mut rays = Rays16::default();
-        for (i, [seed, sample]) in numbers.into_iter().enumerate() {
-            rays.set(i, &view.sample_ray(pixels[i], jitter.get(i), seed, sample));
-        }
-        if world.scene.hides_emitters {
-            (0..count).for_each(|i| rays.set(i, &world.behind_hidden(rays.get(i))));
-        }
+        let mut rays = view.sample_rays(&pixels, &jitter, &seeds, &numbers);
+        world.put_behind_hidden(&mut rays);
         batch.push(rays, samplers, pixel_seeds, cone, count);
     }
 }
