@@ -6,13 +6,13 @@ use super::tally::Tally;
 use base::progress::Control;
 use base::stats::Stage;
 use std::sync::{Arc, Mutex, PoisonError};
-use transport::caustics::{CausticPhotons, Caustics, PhotonCount, PilotPaths};
+use transport::caustics::{CausticPhotons, Caustics, PhotonCount, PilotPaths, pilot_tasks};
 use transport::eye::{EyePass, EyeSettings};
 use world::World;
 use world::view::View;
 
-/// Seed and maximum path length on which photons depend, besides the scene.
-type PhotonKey = (u32, u32);
+/// Tasks of pilot paths, seed and maximum path length on which photons depend, besides the scene.
+type PhotonKey = (u32, u32, u32);
 
 /// Photons of a seed and a path length: those of the pilot, and more.
 struct PhotonLevels {
@@ -23,8 +23,8 @@ struct PhotonLevels {
 }
 
 impl PhotonLevels {
-    fn new(world: &World, seed: u32, max_depth: u32, control: &Control) -> PhotonLevels {
-        let first = PilotPaths::new(world, seed, max_depth, control);
+    fn new(world: &World, (tasks, seed, max_depth): PhotonKey, control: &Control) -> PhotonLevels {
+        let first = PilotPaths::new(world, tasks, seed, max_depth, control);
         let pilot = first.photons(world, PhotonCount::PILOT, control);
         PhotonLevels { first, pilot, more: Mutex::default() }
     }
@@ -70,7 +70,7 @@ impl PhotonStore {
         settings: EyeSettings,
         control: &Control,
     ) -> FoundCaustics {
-        let levels = self.levels(world, settings, control);
+        let levels = self.levels(world, view, settings, control);
         levels.light(&levels.pilot, view, settings)
     }
 
@@ -82,7 +82,7 @@ impl PhotonStore {
         settings: EyeSettings,
         control: &Control,
     ) -> FoundCaustics {
-        let levels = self.levels(world, settings, control);
+        let levels = self.levels(world, view, settings, control);
         let pilot = levels.light(&levels.pilot, view, settings);
         let Some(light) = &pilot.caustics else { return pilot };
         let (factor, chains) = EyePass::photon_count_factor(world, view, settings, light, control);
@@ -123,10 +123,15 @@ impl PhotonStore {
         forget(&self.levels);
     }
 
-    fn levels(&self, world: &World, settings: EyeSettings, control: &Control) -> Arc<PhotonLevels> {
-        let EyeSettings { seed, max_depth, .. } = settings;
-        let make = |&(seed, max_depth): &PhotonKey| PhotonLevels::new(world, seed, max_depth, control);
-        recall(&self.levels, (seed, max_depth), control, make)
+    fn levels(
+        &self,
+        world: &World,
+        view: &View,
+        settings: EyeSettings,
+        control: &Control,
+    ) -> Arc<PhotonLevels> {
+        let key = (pilot_tasks(view.window.film_pixel_count()), settings.seed, settings.max_depth);
+        recall(&self.levels, key, control, |key| PhotonLevels::new(world, *key, control))
     }
 }
 

@@ -39,6 +39,8 @@ use std::f32::consts::PI;
 use world::material::Bsdf;
 use world::{Surface, World};
 
+pub use photons::pilot_tasks;
+
 /// Approximate number of photons in the disc of a photon.
 const NEIGHBOURS: f32 = 40.0;
 
@@ -104,20 +106,20 @@ pub struct Caustics {
 }
 
 impl PilotPaths {
-    /// Traces the pilot paths for paths of at most `max_depth` edges from the eye.
-    pub fn new(world: &World, seed: u32, max_depth: u32, control: &Control) -> PilotPaths {
+    /// Traces the pilot paths of so many tasks, for paths of at most `max_depth` edges from the eye.
+    pub fn new(world: &World, tasks: u32, seed: u32, max_depth: u32, control: &Control) -> PilotPaths {
         // Paths of photons have two edges at least, and the eye's path has another.
         let max_edges = max_depth.saturating_sub(1);
         let may_be = world.specular.has_delta_lobes() && world.specular.spread_light() && max_edges >= 2;
         let emitter = if may_be { PhotonEmitter::new(world) } else { None };
-        let pilot =
-            emitter.map(|emitter| CausticTracer::new(world, &emitter, seed, max_edges, control).pilot());
-        PilotPaths { found: pilot, seed, max_edges }
+        let found =
+            emitter.map(|emitter| CausticTracer::new(world, &emitter, seed, max_edges, control).pilot(tasks));
+        PilotPaths { found, seed, max_edges }
     }
 
     /// Number of pilot paths.
     pub fn paths(&self) -> u64 {
-        self.found.as_ref().map_or(0, |_| photons::PILOT_PATHS.into())
+        self.found.as_ref().map_or(0, |found| found.paths.into())
     }
 
     /// Number of closest-hit queries.

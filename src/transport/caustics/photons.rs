@@ -14,13 +14,19 @@ use world::World;
 /// Number of paths per task.
 const CHUNK: u32 = 1024;
 
-/// Number of tasks of pilot paths.
-const PILOT_TASKS: u32 = 256;
+/// Number of pilot paths per pixel of the film. Small films show less of what photons light, and take less time.
+const PILOT_PATHS_PER_PIXEL: u64 = 4;
+
+/// Minimum number of tasks of pilot paths.
+const MIN_PILOT_TASKS: u64 = 16;
+
+/// Maximum number of tasks of pilot paths.
+const MAX_PILOT_TASKS: u32 = 256;
 
 /// Number of tasks between two tests of the limits.
 const WAVE: u32 = 64;
 
-/// Minimum number of photons of pilot paths; with fewer, photons are not traced.
+/// Minimum number of photons of the maximum number of pilot paths; with fewer, photons are not traced.
 const MIN_FOUND: usize = 8;
 
 /// Standard number of photons.
@@ -81,12 +87,17 @@ struct CausticChunk {
 pub struct PilotYield {
     /// Yield by cell of [`Aims`]; empty if photons are not to be traced.
     cells: Vec<CellYield>,
+    /// Number of paths.
+    pub paths: u32,
     /// Number of closest-hit queries.
     pub rays: u64,
 }
 
-/// Number of pilot paths.
-pub const PILOT_PATHS: u32 = CHUNK * PILOT_TASKS;
+/// Returns the number of tasks of pilot paths for a film of so many pixels.
+pub fn pilot_tasks(film_pixels: u64) -> u32 {
+    let wanted = film_pixels.saturating_mul(PILOT_PATHS_PER_PIXEL) / u64::from(CHUNK);
+    wanted.clamp(MIN_PILOT_TASKS, MAX_PILOT_TASKS.into()) as u32
+}
 
 /// Tracing of caustic photons in a scene.
 pub struct CausticTracer<'a, 'w> {
@@ -109,12 +120,12 @@ impl<'a, 'w> CausticTracer<'a, 'w> {
         CausticTracer { world, emitter, seed, max_edges: max_edges.min(MAX_EDGES), control }
     }
 
-    /// Traces the pilot paths. Their photons are only counted.
-    pub fn pilot(&self) -> PilotYield {
+    /// Traces the pilot paths of so many tasks. Their photons are only counted.
+    pub fn pilot(&self, tasks: u32) -> PilotYield {
         let even = Aims::even(self.emitter);
-        let (mut cells, mut rays) = (vec![CellYield::default(); even.cells()], 0);
+        let (paths, mut cells, mut rays) = (tasks * CHUNK, vec![CellYield::default(); even.cells()], 0);
         let (mut flux, mut count) = (0.0, 0);
-        for chunk in self.chunks(&even, hash(self.seed, 0xca57), 0..PILOT_TASKS) {
+        for chunk in self.chunks(&even, hash(self.seed, 0xca57), 0..tasks) {
             rays += chunk.rays;
             count += chunk.photons.len();
             flux += chunk.photons.iter().map(|photon| luminance(photon.flux)).sum::<f32>();
@@ -123,12 +134,12 @@ impl<'a, 'w> CausticTracer<'a, 'w> {
                 cells[cell].photons += photons as f32;
             }
         }
-        let share = flux / (PILOT_PATHS as f32 * self.emitter.power());
+        let share = flux / (paths as f32 * self.emitter.power());
         let paths_suffice = !(share >= MIN_FLUX) && !self.world.scene.has_small_lights();
-        if count < MIN_FOUND || paths_suffice {
+        if count * (MAX_PILOT_TASKS as usize) < MIN_FOUND * tasks as usize || paths_suffice {
             cells.clear();
         }
-        PilotYield { cells, rays }
+        PilotYield { cells, paths, rays }
     }
 
     /// Traces photons, `factor` times the standard number; none if the pilot paths advise against it.
@@ -139,7 +150,7 @@ impl<'a, 'w> CausticTracer<'a, 'w> {
         }
         let [photons, paths, rays] =
             [PHOTONS, MAX_PATHS, MAX_RAYS].map(|standard| (standard * factor) as u64);
-        let aims = Aims::even(self.emitter).learned(&pilot.cells, PILOT_PATHS as f32);
+        let aims = Aims::even(self.emitter).learned(&pilot.cells, pilot.paths as f32);
         let (mut wave, mut evenly) = (0, 0.0);
         while (traced.photons.len() as u64) < photons
             && traced.paths < paths

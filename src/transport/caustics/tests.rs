@@ -86,12 +86,12 @@ fn photons_come_by_mirrors_and_glass_alone_and_scenes_without_have_none() {
         world(scene)
     };
     let control = Control::new();
-    let none = PilotPaths::new(&lamp_room(diffuse(Rgb::ONE)), 0, u32::MAX, &control);
+    let none = PilotPaths::new(&lamp_room(diffuse(Rgb::ONE)), 16, 0, u32::MAX, &control);
     assert_eq!(none.paths(), 0);
     let world = lamp_room(glass(1.5));
     let emitter = PhotonEmitter::new(&world).expect("there is a lamp");
     let tracer = |max_edges| CausticTracer::new(&world, &emitter, 0, max_edges, &control);
-    let pilot = tracer(u32::MAX).pilot();
+    let pilot = tracer(u32::MAX).pilot(256);
     let photons = |factor: f32, max_edges: u32| tracer(max_edges).photons(&pilot, factor);
     let traced = photons(1.0, u32::MAX);
     // All light on the ball leaves it in the end.
@@ -112,4 +112,10 @@ fn photons_come_by_mirrors_and_glass_alone_and_scenes_without_have_none() {
     let places = |photons: &[CausticPhoton]| photons.iter().map(|photon| photon.position).collect::<Vec<_>>();
     assert!(3 * few.photons.len() < traced.photons.len());
     assert_eq!(places(&few.photons), places(&traced.photons[..few.photons.len()]));
+}
+
+#[test]
+fn pilot_paths_follow_the_size_of_the_film_up_to_256x256() {
+    let tasks = [1, 24, 128, 256, 16_384].map(|side: u64| pilot_tasks(side * side));
+    assert_eq!(tasks, [16, 16, 64, 256, 256]);
 }

@@ -113,7 +113,7 @@ fn no_photon_is_traced_where_nothing_stores_it() {
         let lights = light_pass(&world, &settings, &[], u32::MAX, &Control::new());
         assert_eq!((lights.photons.rays > 0, lights.photons.paths > 0), (stores, stores), "{material:?}");
         if !world.specular.spread_light() {
-            assert_eq!(PilotPaths::new(&world, 1, u32::MAX, &Control::new()).rays(), 0, "{material:?}");
+            assert_eq!(PilotPaths::new(&world, 16, 1, u32::MAX, &Control::new()).rays(), 0, "{material:?}");
         }
     }
 }
