@@ -30,7 +30,7 @@ pub struct PictureArgs {
     /// Samples that these layers describe. Alpha is always a mean
     #[arg(long, value_enum, value_name = "MODE", default_value_t)]
     aov_mode: AovMode,
-    /// Write colours, albedos and normals as half floats. Depth, positions, ids and masks stay 32-bit
+    /// Write colours, albedos and normals as half floats, and no variances. Depth, positions, ids and masks stay 32-bit
     #[arg(long)]
     half: bool,
     /// Write depth as NAME.depth.png with 16 bits, as the number of steps of 1/STEPS. With 1000, a scene in metres has

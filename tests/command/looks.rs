@@ -84,6 +84,8 @@ fn masks_ids_halves_and_depths_are_written() {
     for name in ["CryptoObject00.R", "CryptoObject02.A", "CryptoMaterial01.G", "objectId"] {
         assert!(channels.iter().any(|channel| channel == name), "{channels:?}");
     }
+    let has_variance = |file: &ExrFile| file.channels().iter().any(|channel| channel.contains("variance"));
+    assert!(has_variance(&full) && !has_variance(&half));
     let bytes = read(&sandbox.path("a.exr"));
     let has = |text: &str| bytes.windows(text.len()).any(|window| window == text.as_bytes());
     assert!(has("cryptomatte/3ae39a5/manifest") && has("cryptomatte/be359d6/conversion"));

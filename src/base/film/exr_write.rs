@@ -23,6 +23,9 @@ const CRYPTOMATTE: &str = "cryptomatte/";
 /// Layers that are half floats if the film asks for it; the image has the name "".
 const HALVES: [&str; 5] = ["", "noisy", "albedo", "normal", "geometricNormal"];
 
+/// End of the names of layers that files with half floats leave out: half floats cannot hold small variances.
+const VARIANCE: &str = "variance";
+
 type Channels = SmallVec<[AnyChannel<FlatSamples>; 4]>;
 
 /// Writes `film` to `path`, completely or not at all.
@@ -45,7 +48,7 @@ pub fn write_exr(path: &Path, film: &Film) -> std::result::Result<(), ImageError
         }
     };
     triples("", ["R", "G", "B"], &film.color, &mut channels);
-    for layer in &film.layers {
+    for layer in film.layers.iter().filter(|layer| !film.half || !layer.name.ends_with(VARIANCE)) {
         let name = &layer.name;
         match &layer.pixels {
             Pixels::Color(image) => triples(name, ["R", "G", "B"], image, &mut channels),

@@ -16,7 +16,7 @@ pub struct Film {
     pub camera: Option<CameraMatrices>,
     /// Metadata: settings, statistics and scene of the image.
     pub metadata: Metadata,
-    /// True if the file is to hold colours, albedos and normals as half floats.
+    /// True if the file is to hold colours, albedos and normals as half floats, and no variances.
     pub half: bool,
 }
 
