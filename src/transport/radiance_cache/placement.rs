@@ -277,7 +277,7 @@ mod tests {
         let mut floor = Floor::grid(16);
         floor.points.geometry.iter_mut().skip(1).step_by(2).for_each(|point| point.is_chained = true);
         let all = 0..floor.points.len();
-        // Of a pixel's light, such a point gives so little that it may have any error.
+        // Such points may have any error: they give little of their pixels' light.
         let known = |floor: &Floor| {
             let is_chained = |i: usize| floor.points.geometry[i].is_chained;
             let targets = floor.targets().with_baseline(|i| if is_chained(i) { 1e30 } else { 1.0 });
