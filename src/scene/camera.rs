@@ -93,14 +93,14 @@ impl Camera {
     /// `resolution` film.
     ///
     /// The horizontal field of view is the same for all aspect ratios.
-    #[inline]
+    #[inline(always)]
     pub fn direction(&self, pixel: [f32; 2], resolution: [u32; 2]) -> Vec3 {
         let [x, y] = self.across(pixel, resolution);
         (self.forward + self.right * x + self.up * y).normalize()
     }
 
     /// Returns the offset to the right and up from the axis to `pixel`, at distance 1 from a pinhole.
-    #[inline]
+    #[inline(always)]
     fn across(&self, pixel: [f32; 2], resolution: [u32; 2]) -> [f32; 2] {
         let [w, h] = resolution.map(|r| r as f32);
         let x = (2.0 * pixel[0] / w - 1.0) * self.tan_half_x;
@@ -111,7 +111,7 @@ impl Camera {
     /// Returns origin and unit direction of the ray through film position `pixel`.
     ///
     /// `lens` in the unit square chooses the position on a lens.
-    #[inline]
+    #[inline(always)]
     pub fn ray(&self, pixel: [f32; 2], resolution: [u32; 2], lens: Vec2) -> (Vec3, Vec3) {
         let across = |[x, y]: [f32; 2]| self.right * x + self.up * y;
         match self.projection {

@@ -8,7 +8,7 @@ use base::math::{Cone, LANES, U32x16, Vec2x16};
 use base::sampling::{Sampler, hash};
 use embree::{Ray, Rays16};
 use glam::{DVec3, Vec2, Vec3};
-use scene::{Camera, Cameras, PixelFilter, Projection};
+use scene::{Camera, Cameras, Projection};
 
 /// Maximum number of pixels rendered at once (16384 × 65536), which bounds the memory.
 const MAX_PIXELS: u64 = 1 << 30;
@@ -109,7 +109,7 @@ impl View {
     }
 
     /// Returns the ray of a sample of the pixel (see [`View::primary_ray`]), through a sampled point of the lens.
-    #[inline(always)]
+    #[inline]
     pub fn sample_ray(&self, pixel: [u32; 2], jitter: Vec2, seed: u32, sample: u32) -> Ray {
         let lens = match self.camera.projection {
             Projection::Lens { .. } => {
@@ -131,26 +131,31 @@ impl View {
         samples: &U32x16,
     ) -> Rays16 {
         let mut rays = Rays16::default();
-        let mut set = |view: &View, i: usize| {
-            rays.set(i, &view.sample_ray(pixels[i], jitter.get(i), seeds[i], samples[i]));
-        };
-        let camera = &self.camera;
-        if camera.projection == Projection::Pinhole && camera.filter == PixelFilter::Box {
-            // With these constants, the loop becomes vector code.
-            let camera = Camera { projection: Projection::Pinhole, filter: PixelFilter::Box, ..*camera };
-            let view = View { camera, ..*self };
-            (0..LANES).for_each(|i| set(&view, i));
-        } else {
-            (0..LANES).for_each(|i| set(self, i));
+        if self.camera.projection != Projection::Pinhole {
+            for i in 0..LANES {
+                rays.set(i, &self.sample_ray(pixels[i], jitter.get(i), seeds[i], samples[i]));
+            }
+            return rays;
+        }
+        // With a constant projection, the second loop becomes vector code.
+        let camera = Camera { projection: Projection::Pinhole, ..self.camera };
+        let mut places = Vec2x16::default();
+        (0..LANES).for_each(|i| places.set(i, camera.filter.place(jitter.get(i))));
+        for i in 0..LANES {
+            rays.set(i, &self.through(&camera, pixels[i], places.get(i), Vec2::splat(0.5)));
         }
         rays
     }
 
     /// Returns the ray through a pixel and a point of the lens.
+    #[inline]
+    fn ray(&self, pixel: [u32; 2], jitter: Vec2, lens: Vec2) -> Ray {
+        self.through(&self.camera, pixel, self.camera.filter.place(jitter), lens)
+    }
+
+    /// Returns the ray of a camera through a place in a pixel and a point of the lens.
     #[inline(always)]
-    fn ray(&self, [x, y]: [u32; 2], jitter: Vec2, lens: Vec2) -> Ray {
-        let camera = &self.camera;
-        let place = camera.filter.place(jitter);
+    fn through(&self, camera: &Camera, [x, y]: [u32; 2], place: Vec2, lens: Vec2) -> Ray {
         let (origin, direction) =
             camera.ray([x as f32 + place.x, y as f32 + place.y], self.window.film, lens);
         let cos = direction.dot(camera.forward);
@@ -226,6 +231,7 @@ impl View {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use scene::PixelFilter;
 
     fn cameras() -> Cameras {
         let path = (0..3).map(|i| Camera { origin: Vec3::X * i as f32, ..Camera::default() }).collect();
