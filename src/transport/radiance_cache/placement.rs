@@ -285,7 +285,8 @@ mod tests {
         };
         let some = known(&floor);
         floor.points.geometry.iter_mut().for_each(|point| point.is_chained = false);
-        assert_eq!(some, floor.targets().with_baseline(|_| 1.0).darkest_baseline(all.clone()));
+        let alone = floor.targets().with_baseline(|_| 1.0).darkest_baseline(all.clone());
+        assert!((some / alone - 1.0).abs() < 1e-5, "{some} {alone}");
         // If there are no others, one of them with little light is enough.
         floor.points.geometry.iter_mut().for_each(|point| point.is_chained = true);
         let targets = floor.targets().with_baseline(|i| if i % 32 == 0 { 1.0 } else { 1e30 });
