@@ -9,7 +9,7 @@ use transport::eye::{EyePass, EyeSettings};
 use transport::lightcut::{
     CoherenceLimit, OrientedPoint, Receiver, ReceiverPacket, Transfer, group_coherent, group_compact,
 };
-use transport::lights::{Family, LightPass, LightPassSettings, LightTrees, light_pass};
+use transport::lights::{LightPass, LightPassSettings, LightTrees, light_pass};
 use world::World;
 use world::view::View;
 
@@ -36,7 +36,7 @@ impl<'w> LitScene<'w> {
         let samples = EyePass::trace(world, &view, eye, &Control::new());
         let LightPass { sets, profiles, .. } =
             light_pass(world, &LightPassSettings::default(), &[], depth, &Control::new());
-        let trees = LightTrees::build(&sets, profiles, world.diagonal, Family::default(), &Control::new());
+        let trees = LightTrees::build(&sets, profiles, world.diagonal, &Control::new());
         LitScene { world, samples, trees }
     }
 

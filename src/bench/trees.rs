@@ -1,4 +1,4 @@
-//! Light trees: time to build and size of the cuts through them, for both families of builders.
+//! Light trees: time to build and size of the cuts through them.
 
 use super::lit_scene::{LitScene, packet};
 use super::measure::{Case, Clock, measure};
@@ -6,7 +6,7 @@ use super::{Benchmark, Context, Kind, Table};
 use base::progress::Control;
 use std::hint::black_box;
 use transport::lightcut::{CutSettings, Lightcut, Transfer};
-use transport::lights::{Family, LightPass, LightPassSettings, LightTrees, light_pass};
+use transport::lights::{LightPass, LightPassSettings, LightTrees, light_pass};
 use world::shadow::Engine;
 
 pub(super) const BENCHMARK: Benchmark = Benchmark {
@@ -30,23 +30,20 @@ fn run(context: &Context) -> Vec<Table> {
         let depth = world.scene.path_limit(None);
         let LightPass { sets, profiles, .. } = light_pass(world, &light, &[], depth, &Control::new());
         let sets = std::rc::Rc::new(sets);
-        let against = cases.len();
-        for family in [Family::Divisive, Family::Agglomerative] {
-            let trees = LightTrees::build(&sets, profiles.clone(), diagonal, family, &Control::new());
-            let cuts = [0.02, 0.01].map(|epsilon| mean_cut(&lit, &trees, epsilon));
-            let (sets, spots) = (sets.clone(), profiles.clone());
-            let labels = [&indirect.to_string(), &*format!("{family:?}").to_lowercase()];
-            let lights = trees.vpls.len() as f64;
-            let build = move || {
-                black_box(LightTrees::build(&sets, spots.clone(), diagonal, family, &Control::new()));
-            };
-            cases.push(Case::new(&labels, against, lights, build).with(&cuts));
-        }
+        let trees = LightTrees::build(&sets, profiles.clone(), diagonal, &Control::new());
+        let cuts = [0.02, 0.01].map(|epsilon| mean_cut(&lit, &trees, epsilon));
+        let (sets, spots) = (sets.clone(), profiles.clone());
+        let labels = [&*indirect.to_string()];
+        let lights = trees.vpls.len() as f64;
+        let build = move || {
+            black_box(LightTrees::build(&sets, spots.clone(), diagonal, &Control::new()));
+        };
+        cases.push(Case::new(&labels, cases.len(), lights, build).with(&cuts));
     }
     let table = Table {
         title: "Light trees",
-        about: "Virtual lights clustered per second. Ratio to the divisive family. Cuts of single points, not capped.",
-        labels: &["indirect lights", "family"],
+        about: "Virtual lights clustered per second. Cuts of single points, not capped.",
+        labels: &["indirect lights"],
         unit: "M lights/s",
         figures: &["mean cut at 2 %", "at 1 %"],
         ..Table::default()

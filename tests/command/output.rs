@@ -41,7 +41,7 @@ fn the_settings_of_lightcuts_reach_the_method_and_the_file() {
         "clamp=0",
     ];
     let shadows = ["--set", "share=off", "--set", "occluder-slots=256", "--set", "occluder-ways=2"];
-    let coarse = [&["--method", "lightcuts", "--set", "tree=agglomerative"], &options[..], &shadows].concat();
+    let coarse = [&["--method", "lightcuts"], &options[..], &shadows].concat();
     sandbox.render("a.exr", &coarse).expect(0);
     let file = ExrFile::read(&sandbox.path("a.exr")).unwrap();
     assert_eq!(file.metadata().text("method"), Some("lightcuts"));
@@ -49,7 +49,7 @@ fn the_settings_of_lightcuts_reach_the_method_and_the_file() {
         serde_json::from_str(file.metadata().text("settings").unwrap()).unwrap();
     let expected = serde_json::json!({
         "spp": 4, "seed": 0, "max_depth": null, "epsilon": 0.3, "max_cut": 7, "vpls": 300, "direct_vpls": 256,
-        "clamp": 0, "compensation": "on", "tree": "agglomerative", "share": "off",
+        "clamp": 0, "compensation": "on", "share": "off",
         "occluder_cache": "auto", "occluder_slots": 256, "occluder_ways": 2,
     });
     assert_eq!(settings, expected);

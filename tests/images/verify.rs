@@ -7,7 +7,7 @@ use lightsplat::film::metrics::{rel_mse, rel_mse_of_variance, relative_error_map
 use lightsplat::film::{Image, Window};
 use lightsplat::math::Rgb;
 use lightsplat::method::path::{PixelPaths, PixelSampling, RayCounts, pixel_means};
-use lightsplat::method::{Estimand, Family, Method, path, vpl};
+use lightsplat::method::{Estimand, Method, path, vpl};
 use lightsplat::progress::Control;
 use lightsplat::scene::PixelFilter;
 use lightsplat::verify::{Estimate, Verified, VerifySettings, verify};
@@ -236,7 +236,7 @@ fn intervals_cover_the_true_error_at_least_nine_times_in_ten() {
         let eye = Estimand::EyeSamples { spp: cached.spp, seed: cached.seed };
         let mut few = cached;
         (few.light.indirect, few.cut.epsilon) = (20_000, 0.04);
-        let cuts = vpl::Settings { family: Family::default(), ..vpl::Settings::lightcuts() };
+        let cuts = vpl::Settings::lightcuts();
         let few_paths = path::Settings { spp: 64, ..Default::default() };
         let by_default = vpl::Settings::cache();
         let pairs = match name {

@@ -9,7 +9,7 @@ use std::sync::Arc;
 use transport::eye::EyeSettings;
 use transport::irradiance::{EndsWanted, PathEnds};
 use transport::learning::{LearnedLight, Learning};
-use transport::lights::{Family, LightPassSettings, Lights, LightsWanted};
+use transport::lights::{LightPassSettings, Lights, LightsWanted};
 use world::view::View;
 use world::{SurfacePoint, World};
 
@@ -20,11 +20,10 @@ pub fn lights_wanted(
     world: &World,
     sampling: Sampling,
     numbers: LightPassSettings,
-    family: Family,
     seen: Vec<SurfacePoint>,
 ) -> LightsWanted {
     let pass = LightPassSettings { seed: sampling.seed, ..numbers };
-    LightsWanted { pass, family, max_depth: world.scene.path_limit(sampling.max_depth), seen }
+    LightsWanted { pass, max_depth: world.scene.path_limit(sampling.max_depth), seen }
 }
 
 /// Virtual lights, photons and learned light of the last frame. Frames reuse them if they want the same ones.

@@ -7,7 +7,7 @@ use base::progress::Control;
 use base::stats::Stage;
 use std::sync::Arc;
 use transport::eye::{DirectSampling, EyePass, LightSources, ShadingPoints, TILE};
-use transport::lights::{Family, LightPassSettings, Lights};
+use transport::lights::{LightPassSettings, Lights};
 use world::view::View;
 use world::{SurfacePoint, World};
 
@@ -35,8 +35,6 @@ pub struct Preparation<'a> {
     pub direct: Option<DirectSampling>,
     /// Numbers of VPLs.
     pub lights: LightPassSettings,
-    /// Builder of the light trees.
-    pub family: Family,
     /// Surfaces that the lights are made for.
     pub lit: LitSurfaces<'a>,
 }
@@ -60,7 +58,7 @@ impl<'w> Prepared<'w> {
         preparation: &Preparation,
         control: &Control,
     ) -> Prepared<'w> {
-        let Preparation { sampling, direct, lights: numbers, family, lit } = preparation;
+        let Preparation { sampling, direct, lights: numbers, lit } = preparation;
         let mut tally = Tally::default();
         let settings = sampling.eye(&world.scene);
         let caustics = lights.photons.for_image(world, view, settings, control, &mut tally);
@@ -93,7 +91,7 @@ impl<'w> Prepared<'w> {
             LitSurfaces::Seen(points) => points.to_vec(),
             LitSurfaces::All => Vec::new(),
         };
-        let wanted = lights_wanted(world, *sampling, *numbers, *family, seen);
+        let wanted = lights_wanted(world, *sampling, *numbers, seen);
         let lights = lights.get(world, wanted, control, &mut tally);
         Prepared { eye, lights, tally }
     }

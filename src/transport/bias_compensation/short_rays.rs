@@ -124,7 +124,7 @@ fn weighed(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::lights::{Family, LightTrees, Lights};
+    use crate::lights::{LightTrees, Lights};
     use base::progress::Control;
     use std::f32::consts::PI;
     use world::World;
@@ -154,7 +154,7 @@ mod tests {
     /// Estimates by π/N Σ over `count` rays of a seed.
     fn estimates(bound: f32, near_sq: f32, count: u32, seed: u32) -> [f32; 2] {
         let world = ceiling();
-        let trees = LightTrees::build(&[], Vec::new(), world.diagonal, Family::default(), &Control::new());
+        let trees = LightTrees::build(&[], Vec::new(), world.diagonal, &Control::new());
         let (diagonal, near) = (world.diagonal, vec![near_sq]);
         let lights = Lights { trees, near_sq: near, intensities: None, diagonal, seed, vpls: 0, rays: 0 };
         let c = Compensation::new(&world, &lights);

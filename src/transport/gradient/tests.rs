@@ -1,7 +1,7 @@
 //! Derivatives against finite differences in double precision and against the paper's formula.
 
 use super::*;
-use crate::lights::{Family, LightTrees, LobeProfile, Profiles, SpotProfile, Vpl, VplKind};
+use crate::lights::{LightTrees, LobeProfile, Profiles, SpotProfile, Vpl, VplKind};
 use base::math::Frame;
 use base::progress::Control;
 use glam::{DVec3, Vec3};
@@ -257,7 +257,7 @@ fn virtual_lights_arrive_as_the_lightcut_counts_them() {
     };
     let profiles = Profiles { spots: vec![spot], lobes: vec![lobe] };
     let at = |vpl: &Vpl, kind, x| Incidence::of_vpl(&frame, x, vpl, kind, &profiles, 1e-12);
-    let trees = LightTrees::build(&[], profiles.clone(), 1.0, Family::default(), &Control::new());
+    let trees = LightTrees::build(&[], profiles.clone(), 1.0, &Control::new());
     let transfer =
         crate::lightcut::Transfer { min_dist_sq: 1e-12, ..crate::lightcut::Transfer::new(&trees, 1.0) };
     for (vpl, kind) in [

@@ -2,7 +2,7 @@
 
 use super::{CutSettings, ReceiverPacket};
 use crate::lightcut::{Receiver, Transfer, Visibility, to_vpl};
-use crate::lights::{Family, LightTrees, LobeProfile, Origin, Profiles, SpotProfile, Vpl, VplKind, VplSet};
+use crate::lights::{LightTrees, LobeProfile, Origin, Profiles, SpotProfile, Vpl, VplKind, VplSet};
 use base::math::{Frame, Rgb, V3, Vec3x16, lanes_in};
 use base::progress::Control;
 use base::sampling::{hash, uniform_sphere};
@@ -189,7 +189,7 @@ pub fn low_lamps(numbers: &mut RandomNumbers) -> LightTrees {
         let position = numbers.vec3().with_y(0.05 + 0.05 * numbers.next());
         set.push(Vpl::oriented(position, -Vec3::Y), numbers.vec3());
     }
-    LightTrees::build(&[set], Vec::new(), 1.7, Family::Divisive, &Control::new())
+    LightTrees::build(&[set], Vec::new(), 1.7, &Control::new())
 }
 
 /// A scene without surfaces, in which everything is visible.

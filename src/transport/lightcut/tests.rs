@@ -2,7 +2,7 @@
 
 use super::fixtures::alone;
 use super::{CutSettings, Lightcut, Receiver, ReceiverPacket, Transfer, gather_all};
-use crate::lights::{Family, LightPassSettings, LightTrees, light_pass};
+use crate::lights::{LightPassSettings, LightTrees, light_pass};
 use base::math::{Frame, Rgb, luminance};
 use base::progress::Control;
 use glam::{Vec2, Vec3};
@@ -23,7 +23,7 @@ fn vpls_of_a_furnace_give_the_irradiance_of_the_geometric_series() {
     let settings = LightPassSettings { direct: 6000, indirect: 40_000, seed: 3 };
     let lights = light_pass(&world, &settings, &[], u32::MAX, &Control::new());
     let trees =
-        LightTrees::build(&lights.sets, lights.profiles, world.diagonal, Family::Divisive, &Control::new());
+        LightTrees::build(&lights.sets, lights.profiles, world.diagonal, &Control::new());
     let transfer = Transfer::new(&trees, world.diagonal);
     let expected = PI * emitted / (Rgb::ONE - albedo);
     for normal in [Vec3::Y, -Vec3::X, Vec3::new(1.0, 1.0, 1.0).normalize()] {
@@ -45,33 +45,31 @@ fn cuts_in_a_scene_with_shadows_are_within_their_error() {
     let world = room_with_ball(Some(diffuse(Rgb::splat(0.5))));
     let settings = LightPassSettings { direct: 1024, indirect: 19_000, seed: 1 };
     let lights = light_pass(&world, &settings, &[], u32::MAX, &Control::new());
-    for family in [Family::Divisive, Family::Agglomerative] {
-        let trees =
-            LightTrees::build(&lights.sets, lights.profiles.clone(), world.diagonal, family, &Control::new());
-        let transfer = Transfer::new(&trees, world.diagonal);
-        let settings = CutSettings { clamp: None, max_cut: usize::MAX, ..CutSettings::default() };
-        let mut cut = Lightcut::new();
-        let (mut squares, mut n) = (0.0, 0);
-        for y in (1..32).step_by(2) {
-            for x in (1..32).step_by(2) {
-                let ray = world.view.primary_ray([x, y], Vec2::splat(0.5));
-                let Some(s) = world.intersect(&ray) else { panic!("the room is closed") };
-                let out = -ray.direction;
-                let receiver = Receiver::new(s.position, s.normal, &s.frame, world.bsdf(&s), out);
-                let exact = luminance(gather_all(&transfer, &Engine::new(&world), &receiver));
-                if exact > 0.0 {
-                    let estimate = luminance(
-                        cut.gather(&transfer, &Engine::new(&world), &alone(receiver), &settings).sum.radiance
-                            [0],
-                    );
-                    squares += (estimate / exact - 1.0).powi(2);
-                    n += 1;
-                }
+    let trees =
+        LightTrees::build(&lights.sets, lights.profiles.clone(), world.diagonal, &Control::new());
+    let transfer = Transfer::new(&trees, world.diagonal);
+    let settings = CutSettings { clamp: None, max_cut: usize::MAX, ..CutSettings::default() };
+    let mut cut = Lightcut::new();
+    let (mut squares, mut n) = (0.0, 0);
+    for y in (1..32).step_by(2) {
+        for x in (1..32).step_by(2) {
+            let ray = world.view.primary_ray([x, y], Vec2::splat(0.5));
+            let Some(s) = world.intersect(&ray) else { panic!("the room is closed") };
+            let out = -ray.direction;
+            let receiver = Receiver::new(s.position, s.normal, &s.frame, world.bsdf(&s), out);
+            let exact = luminance(gather_all(&transfer, &Engine::new(&world), &receiver));
+            if exact > 0.0 {
+                let estimate = luminance(
+                    cut.gather(&transfer, &Engine::new(&world), &alone(receiver), &settings).sum.radiance
+                        [0],
+                );
+                squares += (estimate / exact - 1.0).powi(2);
+                n += 1;
             }
         }
-        let rms = (squares / n as f32).sqrt();
-        assert!(n > 200 && rms <= 0.035, "{family:?}: relative RMS error {rms} over {n} points");
     }
+    let rms = (squares / n as f32).sqrt();
+    assert!(n > 200 && rms <= 0.035, "relative RMS error {rms} over {n} points");
 }
 
 /// Relative errors, against the full sum over the same 20,000 VPLs, of single and shared cuts for blocks of
@@ -80,7 +78,7 @@ fn cuts_in_a_scene_with_shadows_are_within_their_error() {
 /// All points of a picture share the representatives, and with them much of their error. So eight light
 /// passes, each with representatives of its own, use two points each in sixteen blocks: one pass alone varies
 /// by a tenth or more.
-fn errors_in(scene: &str, family: Family) -> (Vec<f32>, Vec<f32>) {
+fn errors_in(scene: &str) -> (Vec<f32>, Vec<f32>) {
     let path = format!("{}/../../scenes/{scene}.toml", env!("CARGO_MANIFEST_DIR"));
     let Loaded { scene, cameras, .. } =
         load(path.as_ref(), &LoadOptions::default()).expect("the scene loads");
@@ -92,7 +90,7 @@ fn errors_in(scene: &str, family: Family) -> (Vec<f32>, Vec<f32>) {
     for seed in 0..8 {
         let light = LightPassSettings { direct: 1000, indirect: 19_000, seed };
         let lights = light_pass(&world, &light, &[], u32::MAX, &Control::new());
-        let trees = LightTrees::build(&lights.sets, lights.profiles, world.diagonal, family, &Control::new());
+        let trees = LightTrees::build(&lights.sets, lights.profiles, world.diagonal, &Control::new());
         let transfer = Transfer::new(&trees, world.diagonal);
         let shift = [seed % 4 * 16, seed / 4 * 32];
         for block in 0..16 {
@@ -121,16 +119,14 @@ fn errors_in(scene: &str, family: Family) -> (Vec<f32>, Vec<f32>) {
     (single_errors, shared_errors)
 }
 
-/// Asserts the errors in scenes of this repository by trees of both families.
+/// Asserts the errors in scenes of this repository.
 fn assert_errors_in(scenes: &[&str]) {
     let rms = |e: &[f32]| (e.iter().map(|e| e * e).sum::<f32>() / e.len() as f32).sqrt();
     for scene in scenes {
-        for family in [Family::Divisive, Family::Agglomerative] {
-            let (single, shared) = errors_in(scene, family);
-            assert!(single.len() > 100, "{scene}: {} points", single.len());
-            assert!(rms(&single) <= 0.035, "{scene} {family:?}: single {}", rms(&single));
-            assert!(rms(&shared) <= 0.035, "{scene} {family:?}: shared {}", rms(&shared));
-        }
+        let (single, shared) = errors_in(scene);
+        assert!(single.len() > 100, "{scene}: {} points", single.len());
+        assert!(rms(&single) <= 0.035, "{scene} single {}", rms(&single));
+        assert!(rms(&shared) <= 0.035, "{scene} shared {}", rms(&shared));
     }
 }
 

@@ -24,5 +24,5 @@ pub use origin::{DirectIndirect, Origin};
 pub use profile::{LobeProfile, Profiles, SpotProfile};
 pub use scene_lights::{LightPass, Lights, LightsWanted, light_pass};
 pub use settings::LightPassSettings;
-pub use tree::{Family, LightNode, LightTrees, MAX_VPLS};
+pub use tree::{LightNode, LightTrees, MAX_VPLS};
 pub use vpl::{MIN_DISTANCE, Vpl, VplKind, VplSet, min_dist_sq, near_sq_of_size, size_of_area};

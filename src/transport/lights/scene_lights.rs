@@ -4,7 +4,7 @@
 use super::direct::{DirectVpls, direct_vpls};
 use super::indirect::{IndirectVpls, indirect_vpls};
 use super::{
-    Family, Intensities, IntensitySamples, LightPassSettings, LightTrees, Profiles, VplSet, min_dist_sq,
+    Intensities, IntensitySamples, LightPassSettings, LightTrees, Profiles, VplSet, min_dist_sq,
     near_sq_of_size,
 };
 use crate::emission::PhotonCounts;
@@ -22,8 +22,6 @@ const MANY: usize = 1 << 17;
 pub struct LightsWanted {
     /// Numbers of VPLs and the seed.
     pub pass: LightPassSettings,
-    /// Builder of the trees.
-    pub family: Family,
     /// Maximum number of edges of a path.
     pub max_depth: u32,
     /// Points whose indirect light is wanted; if empty, all points of the scene.
@@ -72,7 +70,7 @@ impl Lights {
         let build = || {
             let samples = IntensitySamples::new(&made.sets, &made.profiles);
             rayon::join(
-                || LightTrees::build(&made.sets, made.profiles, diagonal, wanted.family, control),
+                || LightTrees::build(&made.sets, made.profiles, diagonal, control),
                 || Intensities::new(&samples),
             )
         };

@@ -5,7 +5,7 @@ use super::footprint::Footprint;
 use super::record::{Diagnostics, Record};
 use super::targets::Targets;
 use crate::eye::{PointGeometry, PointSurface, PointSurfaces, ShadingPoints, edge_class};
-use crate::lights::{DirectIndirect, Family, LightTrees, Origin, Profiles, Vpl, VplKind, VplSet};
+use crate::lights::{DirectIndirect, LightTrees, Origin, Profiles, Vpl, VplKind, VplSet};
 use base::kd_tree::KdTree;
 use base::math::{Rgb, luminance};
 use base::progress::Control;
@@ -102,5 +102,5 @@ pub fn light(kind: VplKind, vpl: Vpl, intensity: Rgb) -> LightTrees {
 }
 
 pub fn lit_by(sets: &[VplSet], profiles: Profiles) -> LightTrees {
-    LightTrees::build(sets, profiles, 1.0, Family::Divisive, &Control::new())
+    LightTrees::build(sets, profiles, 1.0, &Control::new())
 }

@@ -7,7 +7,7 @@ use super::record::Record;
 use super::{CacheSettings, CellLimits, Footprints};
 use crate::eye::{EyePass, EyeSettings};
 use crate::lightcut::{CutSettings, Receiver, Transfer, gather_all};
-use crate::lights::{DirectIndirect, Family, LightPassSettings, LightTrees, Origin, light_pass};
+use crate::lights::{DirectIndirect, LightPassSettings, LightTrees, Origin, light_pass};
 use crate::shade::ShadingContext;
 use base::math::{Frame, luminance};
 use base::progress::Control;
@@ -74,7 +74,7 @@ fn extrapolate(world: &WorldAndView, footprints: Footprints, probe_rays: u32) ->
     let mut pass = light_pass(world, &light, &[], 8, &Control::new());
     pass.sets.retain(|set| set.origin == Origin::Indirect);
     let trees =
-        LightTrees::build(&pass.sets, pass.profiles, world.diagonal, Family::Divisive, &Control::new());
+        LightTrees::build(&pass.sets, pass.profiles, world.diagonal, &Control::new());
     let transfer = Transfer::new(&trees, world.diagonal);
     let cut = CutSettings { epsilon: 0.002, max_cut: 20_000, clamp: None, ..CutSettings::default() };
     let settings =

@@ -156,7 +156,7 @@ impl Settings {
         let sampling = self.sampling();
         let eye = sampling.eye(&world.scene);
         let caustics = lights.photons.for_image(world, view, eye, control, &mut tally);
-        let wanted = lights_wanted(world, sampling, self.light, self.family, Vec::new());
+        let wanted = lights_wanted(world, sampling, self.light, Vec::new());
         let lights = lights.get(world, wanted, control, &mut tally);
         let context = ShadingContext::new(world, &lights, self.compensation);
         let rays = EyeRays::new(world, view, eye);

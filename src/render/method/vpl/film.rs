@@ -47,8 +47,8 @@ impl Settings {
         let glossy = (!cache.lights_by_cuts()).then(|| Glossy::new(world, &cache)).flatten();
         let direct = Settings::direct_sampling(glossy.as_ref(), &cache, settled, other_rays);
         let direct = direct.map(|direct| DirectSampling { guides: !is_film && !self.gathers(), ..direct });
-        let (sampling, family) = (self.sampling(), self.family);
-        let preparation = Preparation { sampling, direct, lights: self.light, family, lit };
+        let sampling = self.sampling();
+        let preparation = Preparation { sampling, direct, lights: self.light, lit };
         let Prepared { eye, lights, mut tally } = Prepared::new(world, lights, view, &preparation, control);
         let context = ShadingContext::new(world, &lights, self.compensation);
         let map = self.gathers().then(|| self.gathering.irradiance(world, sampling, control, &mut tally));

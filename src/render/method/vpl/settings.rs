@@ -6,7 +6,7 @@ use crate::method::sampling::method_settings;
 use base::setting::{COMPENSATION, INSPECT, PATCHES, SHARE};
 use transport::eye::{DirectSampling, ExtraSamples, Settled};
 use transport::lightcut::{CutSettings, Samples};
-use transport::lights::{Family, LightPassSettings};
+use transport::lights::{LightPassSettings};
 use transport::radiance_cache::glossy::Glossy;
 use transport::radiance_cache::{CLAMP, CacheSettings, DirectBy, FoundBy, MAX_CUT};
 use transport::shade::ShadeSettings;
@@ -48,8 +48,6 @@ method_settings! {
         cut: CutSettings = CutSettings { clamp: CLAMP, max_cut: MAX_CUT, ..CutSettings::default() } => [group];
         /// Compensation by short rays for light lost to clamping.
         compensation: bool = true => [is COMPENSATION];
-        /// Builder of the light trees.
-        family: Family = Family::default() => [group];
         /// Sources of direct and indirect light, number and accuracy of records.
         cache: CacheSettings = CacheSettings::default() => [group];
         /// Source of indirect light at records.

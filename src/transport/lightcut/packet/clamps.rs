@@ -96,7 +96,7 @@ fn bound(transfer: &Transfer, receiver: &Receiver, share: f32) -> f32 {
 mod tests {
     use super::*;
     use crate::lightcut::fixtures::{RandomNumbers, alone, room};
-    use crate::lights::{Family, Intensities, IntensitySamples, LightTrees, Profiles};
+    use crate::lights::{Intensities, IntensitySamples, LightTrees, Profiles};
     use base::math::Frame;
     use base::progress::Control;
     use glam::Vec3;
@@ -106,7 +106,7 @@ mod tests {
         let set = room(300, &mut RandomNumbers(5));
         let intensities =
             Intensities::new(&IntensitySamples::new(std::slice::from_ref(&set), &Profiles::default()));
-        let trees = LightTrees::build(&[set], Vec::new(), 1.7, Family::Divisive, &Control::new());
+        let trees = LightTrees::build(&[set], Vec::new(), 1.7, &Control::new());
         let plain = Transfer::new(&trees, 1.7);
         let transfer = Transfer { intensities: intensities.as_ref(), ..plain };
         let x = Vec3::new(0.02, 0.4, 0.5);

@@ -3,7 +3,7 @@
 use super::*;
 use crate::lightcut::fixtures::*;
 use crate::lightcut::{CutSettings, Receiver, Transfer, Visibility, clamp, gather_all};
-use crate::lights::{Family, LightNode, LightTrees, Origin, Vpl, VplKind, VplSet};
+use crate::lights::{LightNode, LightTrees, Origin, Vpl, VplKind, VplSet};
 use base::math::{Frame, Rgb, luminance};
 use base::progress::Control;
 use glam::Vec3;
@@ -17,13 +17,11 @@ fn no_member_contributes_more_than_the_clusters_bound() {
     for round in 0..24u32 {
         let mut numbers = RandomNumbers(round << 20);
         let scale = [1e-6, 1.0, 1e6][round as usize % 3];
-        let family = if round % 2 == 0 { Family::Divisive } else { Family::Agglomerative };
         let diagonal = scale * 2.0;
         let trees = LightTrees::build(
             &all_kinds(60, scale, &mut numbers),
             profiles(),
             diagonal,
-            family,
             &Control::new(),
         );
         let transfer = Transfer::new(&trees, diagonal);
@@ -87,19 +85,17 @@ fn relative_errors(trees: &LightTrees, settings: &CutSettings, rays: &impl Visib
 fn cuts_are_within_their_error_and_shrink_with_epsilon() {
     let set = room(20_000, &mut RandomNumbers(1));
     let ball = Ball { centre: Vec3::splat(0.5), radius: 0.25 };
-    for family in [Family::Divisive, Family::Agglomerative] {
-        let trees =
-            LightTrees::build(std::slice::from_ref(&set), Vec::new(), 3f32.sqrt(), family, &Control::new());
-        let at = |epsilon| {
-            let (errors, size) = relative_errors(&trees, &CutSettings { epsilon, ..EXACT }, &ball);
-            (rms(&errors), size)
-        };
-        let (fine, medium, coarse) = (at(0.005), at(0.02), at(0.1));
-        println!("{family:?}: {fine:?} {medium:?} {coarse:?}");
-        assert!(medium.0 <= 0.035, "{family:?}: relative RMS error {}", medium.0);
-        assert!(fine.0 < medium.0 && medium.0 < coarse.0, "{fine:?} {medium:?} {coarse:?}");
-        assert!(fine.1 > medium.1 && medium.1 > coarse.1, "{fine:?} {medium:?} {coarse:?}");
-    }
+    let trees =
+        LightTrees::build(std::slice::from_ref(&set), Vec::new(), 3f32.sqrt(), &Control::new());
+    let at = |epsilon| {
+        let (errors, size) = relative_errors(&trees, &CutSettings { epsilon, ..EXACT }, &ball);
+        (rms(&errors), size)
+    };
+    let (fine, medium, coarse) = (at(0.005), at(0.02), at(0.1));
+    println!("{fine:?} {medium:?} {coarse:?}");
+    assert!(medium.0 <= 0.035, "relative RMS error {}", medium.0);
+    assert!(fine.0 < medium.0 && medium.0 < coarse.0, "{fine:?} {medium:?} {coarse:?}");
+    assert!(fine.1 > medium.1 && medium.1 > coarse.1, "{fine:?} {medium:?} {coarse:?}");
 }
 
 #[test]
@@ -130,7 +126,6 @@ fn with_no_tolerance_the_cut_is_the_full_sum() {
         &all_kinds(300, 1.0, &mut numbers),
         profiles(),
         2.0,
-        Family::Divisive,
         &Control::new(),
     );
     let (errors, _) = relative_errors(&trees, &CutSettings { epsilon: 0.0, ..EXACT }, &Unoccluded);
@@ -143,7 +138,6 @@ fn the_cap_is_respected_and_counted() {
         &[room(5000, &mut RandomNumbers(2))],
         Vec::new(),
         1.7,
-        Family::Divisive,
         &Control::new(),
     );
     let settings = CutSettings { epsilon: 0.001, max_cut: 77, clamp: None, origin: None };
@@ -169,7 +163,7 @@ fn nothing_degenerate_breaks_a_cut() {
         let kind = VplKind::Oriented;
         let mut set = VplSet::new(kind, Origin::Indirect);
         vpls.iter().for_each(|&(vpl, i)| set.push(vpl, Rgb::splat(i)));
-        LightTrees::build(&[set], Vec::new(), 1.0, Family::Divisive, &Control::new())
+        LightTrees::build(&[set], Vec::new(), 1.0, &Control::new())
     };
     let down = |p: Vec3| Vpl::oriented(p, -Vec3::Y);
     let settings = CutSettings { epsilon: 0.0, ..EXACT };
@@ -201,7 +195,7 @@ fn the_same_room_at_any_scale_gives_the_same_cut() {
         for (vpl, &intensity) in reference.vpls.iter().zip(&reference.intensities) {
             set.push(Vpl::oriented(vpl.position * s, vpl.normal()), intensity * s * s);
         }
-        let trees = LightTrees::build(&[set], Vec::new(), 1.7 * s, Family::Divisive, &Control::new());
+        let trees = LightTrees::build(&[set], Vec::new(), 1.7 * s, &Control::new());
         irradiance(&trees, 1.7 * s, Vec3::new(0.3, 0.2, 0.6) * s, &EXACT)
     };
     let unit = at_scale(1.0);
@@ -218,7 +212,7 @@ fn a_weak_singularity_is_clamped_once_and_lights_are_not() {
     let mut set = room(2000, &mut RandomNumbers(4));
     let x = Vec3::new(0.5, 0.5, 0.5);
     let trees_of = |set: &VplSet| {
-        LightTrees::build(std::slice::from_ref(set), Vec::new(), 1.7, Family::Divisive, &Control::new())
+        LightTrees::build(std::slice::from_ref(set), Vec::new(), 1.7, &Control::new())
     };
     let settings = CutSettings { epsilon: 0.002, max_cut: 100_000, clamp: Some(0.02), origin: None };
     let without = luminance(irradiance(&trees_of(&set), 1.7, x, &settings));
@@ -229,7 +223,7 @@ fn a_weak_singularity_is_clamped_once_and_lights_are_not() {
     assert!(clamped > without && clamped < 1.05 * without, "{clamped} {without}");
     let mut light = VplSet::new(VplKind::Omni, Origin::Direct);
     light.push(Vpl::omni(x + Vec3::Y * 1e-3), Rgb::splat(0.1));
-    let trees = LightTrees::build(&[set, light], Vec::new(), 1.7, Family::Divisive, &Control::new());
+    let trees = LightTrees::build(&[set, light], Vec::new(), 1.7, &Control::new());
     assert!(luminance(irradiance(&trees, 1.7, x, &settings)) > 0.9e5, "a lamp keeps its light");
 }
 
@@ -240,7 +234,7 @@ fn few_vpls_share_the_light_and_lose_none_of_it_while_it_is_refined() {
     for i in 0..10 {
         set.push(Vpl::oriented(Vec3::new(0.01 * i as f32, 1.0, 0.0), -Vec3::Y), Rgb::ONE);
     }
-    let trees = LightTrees::build(&[set], Vec::new(), 1.0, Family::Divisive, &Control::new());
+    let trees = LightTrees::build(&[set], Vec::new(), 1.0, &Control::new());
     let free = irradiance(&trees, 1.0, Vec3::ZERO, &EXACT).x;
     let clamped = irradiance(&trees, 1.0, Vec3::ZERO, &CutSettings { clamp: Some(0.02), ..EXACT }).x;
     assert!((clamped / free - 0.2).abs() < 0.002, "{clamped} {free}");
@@ -253,7 +247,6 @@ fn an_unlit_node_is_no_node() {
         &[room(7, &mut RandomNumbers(6))],
         Vec::new(),
         1.7,
-        Family::Divisive,
         &Control::new(),
     );
     let blank = |n: &&LightNode| n.intensity == Rgb::ZERO;

@@ -6,7 +6,7 @@ use crate::lightcut::fixtures::{
     points_near_vpls, profiles, random_receiver, rms, room,
 };
 use crate::lightcut::{CutCounts, CutSettings, Receiver, Transfer, gather_all};
-use crate::lights::{Family, LightTrees, Vpl, VplKind};
+use crate::lights::{LightTrees, Vpl, VplKind};
 use base::math::{LANES, Rgb, Vec3x16, luminance};
 use base::progress::Control;
 use glam::{Vec2, Vec3};
@@ -51,7 +51,7 @@ fn lanes_have_the_responses_of_single_points_and_bounds_above_them() {
         let mut numbers = RandomNumbers(round << 20);
         let scale = [1e-6, 1.0, 1e6][round as usize % 3];
         let sets = all_kinds(60, scale, &mut numbers);
-        let trees = LightTrees::build(&sets, profiles(), 2.0 * scale, Family::Divisive, &Control::new());
+        let trees = LightTrees::build(&sets, profiles(), 2.0 * scale, &Control::new());
         let transfer = Transfer::new(&trees, 2.0 * scale);
         for count in [16, 1, 5] {
             points.set(neighbours(&materials, &scene, scale, count, &mut numbers));
@@ -93,7 +93,6 @@ fn errors(settings: &CutSettings) -> Vec<f32> {
         &[room(20_000, &mut RandomNumbers(1))],
         Vec::new(),
         1.73,
-        Family::Divisive,
         &Control::new(),
     );
     let transfer = Transfer::new(&trees, 1.73);
@@ -155,7 +154,7 @@ fn lanes_clamp_as_single_points_do() {
     set.push(Vpl::oriented(x + Vec3::Y * 1e-3, -Vec3::Y), Rgb::splat(0.1));
     // Below the horizon.
     set.push(Vpl::oriented(x - Vec3::Y * 1e-3, -Vec3::Y), Rgb::splat(0.1));
-    let trees = LightTrees::build(&[set], Vec::new(), 1.7, Family::Divisive, &Control::new());
+    let trees = LightTrees::build(&[set], Vec::new(), 1.7, &Control::new());
     let transfer = Transfer::new(&trees, 1.7);
     let frame = base::math::Frame::from_normal(Vec3::Y);
     let lambert = materials.at(MaterialId(0), Vec2::ZERO);
@@ -189,7 +188,6 @@ fn the_cap_holds_for_the_packet() {
         &[room(5000, &mut RandomNumbers(2))],
         Vec::new(),
         1.7,
-        Family::Divisive,
         &Control::new(),
     );
     let mut points = ReceiverPacket::new();

@@ -1,9 +1,8 @@
 //! Light trees: VPLs clustered in binary trees. Each cluster has bounds, cone, intensity and representative.
 //!
 //! There is one tree for each kind and origin of VPLs. All trees share one array of nodes, and the roots together stand
-//! for the virtual root above them. Both builders produce trees of one form, which are equal for any number of threads.
+//! for the virtual root above them. Trees are equal for any number of threads.
 
-mod agglomerative;
 mod cost;
 mod divisive;
 mod finish;
@@ -14,32 +13,11 @@ mod tests;
 
 use crate::lights::{Origin, Profiles, Vpl, VplSet};
 use base::progress::Control;
-use base::setting::{Each, PAPER, Settings, Spec, choices};
 use cost::Primitive;
 use finish::Finisher;
 use rayon::prelude::*;
 
 pub use node::{LightNode, MAX_VPLS};
-
-choices! {
-    /// Builder of light trees; `lightsplat bench trees SCENE` compares them.
-    pub enum Family = Divisive {
-        /// Top-down: binned splits in position and normal.
-        Divisive = "divisive",
-        /// Bottom-up: locally-ordered clustering.
-        Agglomerative = "agglomerative",
-    }
-}
-
-/// Declaration of the setting.
-static TREE: Spec =
-    Spec::new("tree", "Builder of the light trees", PAPER).values(&["agglomerative", "divisive"]);
-
-impl Settings for Family {
-    fn each(&mut self, each: Each) {
-        each(&TREE, self);
-    }
-}
 
 /// Number of nodes allocated between two tests for cancellation. Allocation takes most of the time.
 const NODES_PER_TEST: usize = 1 << 18;
@@ -67,13 +45,12 @@ impl LightTrees {
         sets: &[VplSet],
         profiles: impl Into<Profiles>,
         diagonal: f32,
-        family: Family,
         control: &Control,
     ) -> LightTrees {
         let mut trees = LightTrees { profiles: profiles.into(), ..LightTrees::default() };
         for set in sets {
             let whole = trees.nodes.len();
-            if trees.add(set, diagonal, family, control).is_none() {
+            if trees.add(set, diagonal, control).is_none() {
                 trees.nodes.truncate(whole);
                 break;
             }
@@ -83,17 +60,14 @@ impl LightTrees {
 
     /// Adds a tree over a set, unless the set is empty. Returns `None` if `control` is cancelled, and then leaves some
     /// nodes behind.
-    fn add(&mut self, set: &VplSet, diagonal: f32, family: Family, control: &Control) -> Option<()> {
+    fn add(&mut self, set: &VplSet, diagonal: f32, control: &Control) -> Option<()> {
         let n = set.len().min(MAX_VPLS - self.vpls.len());
         if n == 0 {
             return Some(());
         }
         let primitive = |i: usize| Primitive::new(set, &self.profiles, i as u32);
         let primitives = (0..n).into_par_iter().map(primitive).collect();
-        let build = || match family {
-            Family::Divisive => divisive::build(primitives, diagonal * diagonal, control),
-            Family::Agglomerative => agglomerative::build(primitives, diagonal * diagonal, control),
-        };
+        let build = || divisive::build(primitives, diagonal * diagonal, control);
         let (first_node, first_vpl) = (self.nodes.len(), self.vpls.len());
         let nodes = &mut self.nodes;
         let blank = LightNode::new(base::math::Rgb::ZERO, 0, set.kind, set.origin);

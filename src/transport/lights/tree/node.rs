@@ -134,37 +134,6 @@ pub struct Topology {
     pub left_sizes: Vec<u32>,
 }
 
-impl Topology {
-    /// Converts from inner nodes as pairs of children. Ids below `leaves.len()` are leaves, other ids inner nodes in
-    /// the order of `pairs`. The last pair is the root.
-    pub fn from_pairs(leaves: &[Primitive], pairs: &[[u32; 2]]) -> Topology {
-        let n = leaves.len();
-        // Children precede their parents, so one sweep finds every size.
-        let mut sizes = vec![1u32; n + pairs.len()];
-        for (i, &[a, b]) in pairs.iter().enumerate() {
-            sizes[n + i] = sizes[a as usize] + sizes[b as usize];
-        }
-        let mut topology =
-            Topology { leaves: Vec::with_capacity(n), left_sizes: Vec::with_capacity(pairs.len()) };
-        let mut stack = Vec::new();
-        if n > 0 {
-            stack.push((n + pairs.len() - 1) as u32);
-        }
-        while let Some(id) = stack.pop() {
-            let id = id as usize;
-            if id < n {
-                topology.leaves.push(leaves[id]);
-            } else {
-                let [left, right] = pairs[id - n];
-                topology.left_sizes.push(sizes[left as usize]);
-                stack.push(right);
-                stack.push(left);
-            }
-        }
-        topology
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

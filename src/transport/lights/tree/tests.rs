@@ -1,4 +1,4 @@
-//! Both families must build valid trees over any VPLs, however degenerate.
+//! Trees must be valid over any VPLs, however degenerate.
 
 use super::*;
 use crate::lightcut::fixtures::profiles;
@@ -7,8 +7,6 @@ use base::math::Rgb;
 use base::progress::Control;
 use glam::{DVec3, Vec3};
 use std::time::Duration;
-
-const FAMILIES: [Family; 2] = [Family::Divisive, Family::Agglomerative];
 
 /// A small generator of test data (not of samples).
 struct Lcg(u64);
@@ -43,8 +41,8 @@ fn random_set(n: usize, kind: VplKind) -> VplSet {
     set
 }
 
-fn build(set: &VplSet, family: Family) -> LightTrees {
-    LightTrees::build(std::slice::from_ref(set), profiles(), 3f32.sqrt(), family, &Control::new())
+fn build(set: &VplSet) -> LightTrees {
+    LightTrees::build(std::slice::from_ref(set), profiles(), 3f32.sqrt(), &Control::new())
 }
 
 /// Checks all properties that lightcuts rely on.
@@ -122,45 +120,39 @@ fn assert_cones_hold_members(trees: &LightTrees) {
 fn trees_are_left_out_if_building_is_cancelled() {
     let control = Control::new();
     control.cancel();
-    for family in [Family::Divisive, Family::Agglomerative] {
-        let sets = [random_set(5000, VplKind::Oriented)];
-        let trees = LightTrees::build(&sets, Vec::new(), 3f32.sqrt(), family, &control);
-        assert!(trees.roots.is_empty() && trees.nodes.is_empty() && trees.vpls.is_empty());
-    }
+    let sets = [random_set(5000, VplKind::Oriented)];
+    let trees = LightTrees::build(&sets, Vec::new(), 3f32.sqrt(), &control);
+    assert!(trees.roots.is_empty() && trees.nodes.is_empty() && trees.vpls.is_empty());
 }
 
 #[test]
 fn trees_that_are_there_when_building_is_cancelled_are_whole() {
     let sets = [random_set(20_000, VplKind::Oriented), random_set(20_000, VplKind::Omni)];
     let mut left_out = 0;
-    for family in FAMILIES {
-        for delay in (0..30).map(|step| Duration::from_micros(700 * step)) {
-            let control = Control::new();
-            let trees = std::thread::scope(|scope| {
-                scope.spawn(|| {
-                    std::thread::sleep(delay);
-                    control.cancel();
-                });
-                LightTrees::build(&sets, Vec::new(), 3f32.sqrt(), family, &control)
+    for delay in (0..30).map(|step| Duration::from_micros(700 * step)) {
+        let control = Control::new();
+        let trees = std::thread::scope(|scope| {
+            scope.spawn(|| {
+                std::thread::sleep(delay);
+                control.cancel();
             });
-            assert_valid(&trees, &sets[..trees.roots.len()]);
-            left_out += sets.len() - trees.roots.len();
-        }
+            LightTrees::build(&sets, Vec::new(), 3f32.sqrt(), &control)
+        });
+        assert_valid(&trees, &sets[..trees.roots.len()]);
+        left_out += sets.len() - trees.roots.len();
     }
     assert!(left_out > 0);
 }
 
 #[test]
 fn trees_of_every_kind_and_size_are_valid() {
-    for family in FAMILIES {
-        for kind in [VplKind::Omni, VplKind::Oriented, VplKind::Directional, VplKind::Lobed] {
-            for n in [0, 1, 2, 3, 5, 16, 17, 100, 1000] {
-                let set = random_set(n, kind);
-                let trees = build(&set, family);
-                assert_valid(&trees, std::slice::from_ref(&set));
-                if let VplKind::Oriented | VplKind::Lobed = kind {
-                    assert_cones_hold_members(&trees);
-                }
+    for kind in [VplKind::Omni, VplKind::Oriented, VplKind::Directional, VplKind::Lobed] {
+        for n in [0, 1, 2, 3, 5, 16, 17, 100, 1000] {
+            let set = random_set(n, kind);
+            let trees = build(&set);
+            assert_valid(&trees, std::slice::from_ref(&set));
+            if let VplKind::Oriented | VplKind::Lobed = kind {
+                assert_cones_hold_members(&trees);
             }
         }
     }
@@ -168,36 +160,32 @@ fn trees_of_every_kind_and_size_are_valid() {
 
 #[test]
 fn several_sets_share_one_array_and_keep_their_origin() {
-    for family in FAMILIES {
-        let mut sets = vec![random_set(50, VplKind::Omni), random_set(70, VplKind::Oriented)];
-        sets[0].origin = Origin::Direct;
-        sets.push(VplSet::new(VplKind::Directional, Origin::Direct));
-        let trees = LightTrees::build(&sets, Vec::new(), 1.0, family, &Control::new());
-        assert_valid(&trees, &sets);
-        assert_eq!(trees.roots.len(), 2, "no tree over nothing");
-        let origins: Vec<_> = trees.roots.iter().map(|&r| trees.nodes[r as usize].origin()).collect();
-        assert_eq!(origins, [Origin::Direct, Origin::Indirect]);
-    }
+    let mut sets = vec![random_set(50, VplKind::Omni), random_set(70, VplKind::Oriented)];
+    sets[0].origin = Origin::Direct;
+    sets.push(VplSet::new(VplKind::Directional, Origin::Direct));
+    let trees = LightTrees::build(&sets, Vec::new(), 1.0, &Control::new());
+    assert_valid(&trees, &sets);
+    assert_eq!(trees.roots.len(), 2, "no tree over nothing");
+    let origins: Vec<_> = trees.roots.iter().map(|&r| trees.nodes[r as usize].origin()).collect();
+    assert_eq!(origins, [Origin::Direct, Origin::Indirect]);
 }
 
 #[test]
 fn vpls_keep_their_numbers_of_edges() {
-    for family in FAMILIES {
-        let mut sets = [random_set(50, VplKind::Omni), VplSet::new(VplKind::Omni, Origin::Indirect)];
-        sets[0].origin = Origin::Direct;
-        for edges in 1..200u8 {
-            sets[1].push_behind(edges, Vpl::omni(Vec3::X * f32::from(edges.reverse_bits())), Rgb::ONE);
-            sets[1].push_behind(edges, Vpl::omni(Vec3::X), Rgb::ZERO);
-        }
-        let trees = LightTrees::build(&sets, Vec::new(), 1.0, family, &Control::new());
-        for leaf in trees.leaves() {
-            let (vpl, edges) = trees.representative(leaf);
-            let expected = match leaf.origin() {
-                Origin::Direct => 0,
-                Origin::Indirect => (vpl.position.x as u8).reverse_bits(),
-            };
-            assert_eq!(edges, expected);
-        }
+    let mut sets = [random_set(50, VplKind::Omni), VplSet::new(VplKind::Omni, Origin::Indirect)];
+    sets[0].origin = Origin::Direct;
+    for edges in 1..200u8 {
+        sets[1].push_behind(edges, Vpl::omni(Vec3::X * f32::from(edges.reverse_bits())), Rgb::ONE);
+        sets[1].push_behind(edges, Vpl::omni(Vec3::X), Rgb::ZERO);
+    }
+    let trees = LightTrees::build(&sets, Vec::new(), 1.0, &Control::new());
+    for leaf in trees.leaves() {
+        let (vpl, edges) = trees.representative(leaf);
+        let expected = match leaf.origin() {
+            Origin::Direct => 0,
+            Origin::Indirect => (vpl.position.x as u8).reverse_bits(),
+        };
+        assert_eq!(edges, expected);
     }
 }
 
@@ -228,12 +216,10 @@ fn degenerate_vpls_build_valid_shallow_trees() {
         (0..3000).for_each(|i| set.push(Vpl::omni(Vec3::X * 2f32.powf(i as f32 * 0.02 - 40.0)), Rgb::ONE));
         set
     };
-    for family in FAMILIES {
-        for set in [&coincident, &antiparallel, &geometric, &far_apart] {
-            let trees = build(set, family);
-            assert_valid(&trees, std::slice::from_ref(set));
-            assert!(depth(&trees) < 400, "{family:?}: depth {}", depth(&trees));
-        }
+    for set in [&coincident, &antiparallel, &geometric, &far_apart] {
+        let trees = build(set);
+        assert_valid(&trees, std::slice::from_ref(set));
+        assert!(depth(&trees) < 400, "depth {}", depth(&trees));
     }
 }
 
@@ -252,17 +238,15 @@ fn depth(trees: &LightTrees) -> usize {
 #[test]
 fn trees_are_the_same_for_any_number_of_threads() {
     let set = random_set(100_000, VplKind::Oriented);
-    for family in FAMILIES {
-        let with = |threads: usize| {
-            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-            pool.install(|| build(&set, family))
-        };
-        let one = with(1);
-        assert_valid(&one, std::slice::from_ref(&set));
-        for threads in [2, 4] {
-            let other = with(threads);
-            assert!(one.nodes == other.nodes && one.vpls == other.vpls, "{family:?}, {threads} threads");
-        }
+    let with = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| build(&set))
+    };
+    let one = with(1);
+    assert_valid(&one, std::slice::from_ref(&set));
+    for threads in [2, 4] {
+        let other = with(threads);
+        assert!(one.nodes == other.nodes && one.vpls == other.vpls, "{threads} threads");
     }
 }
 
@@ -279,7 +263,7 @@ fn representatives_are_drawn_in_proportion_to_intensity() {
             set
         })
         .collect();
-    let trees = LightTrees::build(&sets, Vec::new(), 1.0, Family::Divisive, &Control::new());
+    let trees = LightTrees::build(&sets, Vec::new(), 1.0, &Control::new());
     for &root in &trees.roots {
         bright += usize::from(trees.vpls[trees.nodes[root as usize].representative()].position == Vec3::Y);
     }
@@ -290,11 +274,9 @@ fn representatives_are_drawn_in_proportion_to_intensity() {
 #[test]
 fn a_million_vpls_build() {
     let set = random_set(1_000_000, VplKind::Oriented);
-    for family in FAMILIES {
-        let trees = build(&set, family);
-        assert_eq!(trees.leaves().count(), 1_000_000);
-        assert!(depth(&trees) < 200, "{}", depth(&trees));
-    }
+    let trees = build(&set);
+    assert_eq!(trees.leaves().count(), 1_000_000);
+    assert!(depth(&trees) < 200, "{}", depth(&trees));
 }
 
 /// `cargo test --release --lib light_tree -- --ignored --nocapture`
@@ -303,11 +285,9 @@ fn a_million_vpls_build() {
 fn measure_build_time() {
     for n in [500_000, 1_000_000] {
         let set = random_set(n, VplKind::Oriented);
-        for family in FAMILIES {
-            let start = std::time::Instant::now();
-            let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
-            let trees = pool.install(|| build(&set, family));
-            println!("{family:?} {n}: {:.2} s, depth {}", start.elapsed().as_secs_f64(), depth(&trees));
-        }
+        let start = std::time::Instant::now();
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
+        let trees = pool.install(|| build(&set));
+        println!("{n}: {:.2} s, depth {}", start.elapsed().as_secs_f64(), depth(&trees));
     }
 }

@@ -5,7 +5,7 @@ use crate::lightcut::fixtures::{
     Ball, RandomNumbers, all_kinds, all_materials, profiles, random_receiver, room,
 };
 use crate::lightcut::{Receiver, gather_all};
-use crate::lights::{Family, LightTrees};
+use crate::lights::{LightTrees};
 use base::math::Frame;
 use base::progress::Control;
 use glam::Vec3;
@@ -46,7 +46,6 @@ fn samples_have_the_mean_of_all_virtual_lights() {
             &all_kinds(60, 1.0, &mut numbers),
             profiles(),
             2.0,
-            Family::Divisive,
             &Control::new(),
         );
         let transfer = Transfer::new(&trees, 2.0);
@@ -74,7 +73,7 @@ fn samples_have_the_mean_of_all_virtual_lights() {
 fn single_lights_give_no_more_than_their_share() {
     let mut numbers = RandomNumbers(3);
     let trees =
-        LightTrees::build(&[room(3000, &mut numbers)], Vec::new(), 1.7, Family::Divisive, &Control::new());
+        LightTrees::build(&[room(3000, &mut numbers)], Vec::new(), 1.7, &Control::new());
     let transfer = Transfer::new(&trees, 1.7);
     // Each point is close to one of the lights, and looks past it into the room.
     let close = |i: usize| {
@@ -104,7 +103,7 @@ fn light_too_faint_to_divide_among_samples_is_none() {
     let mut numbers = RandomNumbers(5);
     let mut set = room(500, &mut numbers);
     set.intensities.iter_mut().for_each(|intensity| *intensity *= 1e-46);
-    let trees = LightTrees::build(&[set], Vec::new(), 1.7, Family::Divisive, &Control::new());
+    let trees = LightTrees::build(&[set], Vec::new(), 1.7, &Control::new());
     let transfer = Transfer::new(&trees, 1.7);
     let receiver = Receiver::irradiance(Vec3::new(0.3, 0.4, 0.2), Vec3::Y, &Frame::from_normal(Vec3::Y));
     let mut points = ReceiverPacket::new();
@@ -123,7 +122,7 @@ fn a_sample_stands_for_all_light_of_its_cluster() {
     for (intensity, y) in set.intensities.iter_mut().zip([1.0, 1e-30, 1.0, 1e-30]) {
         *intensity = Rgb::splat(y);
     }
-    let trees = LightTrees::build(&[set], Vec::new(), 1.7, Family::Divisive, &Control::new());
+    let trees = LightTrees::build(&[set], Vec::new(), 1.7, &Control::new());
     for u in [0.0, 0.25, 0.499_999_97, 0.5, 0.75, 0.999_999_94] {
         let mut sample = Descent { node: trees.roots[0], u, of_cluster: 1.0, density: 1.0, lane: 0 };
         (0..LEVELS).for_each(|_| sample.descend(&trees.nodes));
@@ -137,7 +136,7 @@ fn a_sample_stands_for_all_light_of_its_cluster() {
 fn samples_are_as_many_as_the_light_is_worth() {
     let mut numbers = RandomNumbers(5);
     let trees =
-        LightTrees::build(&[room(500, &mut numbers)], Vec::new(), 1.7, Family::Divisive, &Control::new());
+        LightTrees::build(&[room(500, &mut numbers)], Vec::new(), 1.7, &Control::new());
     let transfer = Transfer::new(&trees, 1.7);
     let receiver = Receiver::irradiance(Vec3::new(0.3, 0.4, 0.2), Vec3::Y, &Frame::from_normal(Vec3::Y));
     let total = luminance(gather_all(&transfer, &BALL, &receiver));
@@ -176,7 +175,7 @@ impl Visibility for Screen {
 fn points_that_see_less_of_the_light_take_more_samples() {
     let mut numbers = RandomNumbers(7);
     let trees =
-        LightTrees::build(&[room(2000, &mut numbers)], Vec::new(), 1.7, Family::Divisive, &Control::new());
+        LightTrees::build(&[room(2000, &mut numbers)], Vec::new(), 1.7, &Control::new());
     let transfer = Transfer::new(&trees, 1.7);
     let frame = Frame::from_normal(Vec3::Y);
     let mut points = ReceiverPacket::new();
