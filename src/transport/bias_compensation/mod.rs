@@ -18,13 +18,11 @@
 //! the mean are limited more, and the difference stays lost. Every
 //! point is compensated, even if no light of its cut is clamped: the two parts complement each other on average only.
 //! All points of an image share the directions, in frames of their own, so that their errors are similar and no noise
-//! is visible between them. Surfaces that rays meet reflect as virtual lights do: rough metals by their lobes
-//! ([`lobes`]), others diffusely. If the path length is limited, paths over surfaces that rays hit may have a further
-//! edge.
+//! is visible between them. Surfaces that rays meet reflect diffusely, as most virtual lights do; those of rough metals
+//! radiate by their lobes. If the path length is limited, paths over surfaces that rays hit may have a further edge.
 //!
 //! Units: b in 1/m².
 
-pub mod lobes;
 pub mod near_surface;
 pub mod points;
 pub mod short_rays;

@@ -7,7 +7,7 @@
 
 use super::near_surface::NearSurface;
 use super::short_rays::{self, ClampedPoint};
-use super::{Compensation, choose_evenly, lobes};
+use super::{Compensation, choose_evenly};
 use crate::lightcut::{
     CutCounts, CutSettings, Lightcut, MAX_STEPS, PacketCut, PacketSum, Receiver, ReceiverPacket, SampledCut,
     SampledSettings, Samples, frozen_luminance,
@@ -176,27 +176,25 @@ impl Compensator {
         }
         let met = |i: u32| &self.met[i as usize];
         let mut places = Vec::with_capacity(LANES);
-        let mut of_places = Vec::with_capacity(LANES);
+        let mut edges = Vec::with_capacity(LANES);
         choose_evenly(order.iter().map(|&i| luminance(met(i).1.weight)), total, LANES, |i, _| {
             let (lane, near) = met(order[i]);
             let (position, geometric_normal) = (near.surface.position, near.surface.normal);
             places.push((SurfacePoint { position, normal: near.normal, geometric_normal }, Rgb::ZERO));
-            of_places.push((*near, points[*lane].edges.saturating_sub(1)));
+            edges.push(points[*lane].edges.saturating_sub(1));
         });
-        let receiver = |((p, _), (_, edges)): (&(SurfacePoint, Rgb), &(NearSurface, u16))| {
+        let receiver = |((p, _), edges): (&(SurfacePoint, Rgb), &u16)| {
             Receiver::irradiance(p.position, p.geometric_normal, &Frame::from_normal(p.normal))
                 .with_baseline(baseline)
                 .with_edges(*edges)
         };
-        self.receivers.set(places.iter().zip(&of_places).map(receiver));
+        self.receivers.set(places.iter().zip(&edges).map(receiver));
         let settings = CutSettings {
             epsilon: EPSILON,
             max_cut: MAX_CUT,
             clamp: Some(EPSILON),
             ..CutSettings::default()
         };
-        // Lobes need the clusters of a cut.
-        let seed = seed.filter(|_| of_places.iter().all(|(near, _)| !near.lack.by_lobes));
         let samples = seed.and_then(|seed| {
             let settings = SampledSettings { cut: &settings, samples: &SAMPLES, seed };
             self.sampled.gather(&c.transfer, &Engine::new(c.world), &self.receivers, &settings)
@@ -208,8 +206,8 @@ impl Compensator {
             return places;
         }
         let cut = self.packet.gather(&c.transfer, &Engine::new(c.world), &self.receivers, &settings);
-        for (lane, ((_, irradiance), (near, _))) in places.iter_mut().zip(&of_places).enumerate() {
-            let gathered = limited(c, &cut, near, lane, baseline);
+        for (lane, (_, irradiance)) in places.iter_mut().enumerate() {
+            let gathered = limited(c, &cut, lane, baseline);
             *irradiance = if gathered.is_finite() { gathered } else { Rgb::ZERO };
         }
         places
@@ -282,10 +280,9 @@ fn reflect<'a>(
 
 /// Returns the irradiance of a lane from a `cut`. No indirect cluster may give more than ε of the light to which it is
 /// added. Otherwise a coarse cut would leave clusters whose representative happens to be next to the point.
-fn limited(c: &Compensation, cut: &PacketCut, near: &NearSurface, lane: usize, baseline: f32) -> Rgb {
-    let factors = lobes::factors(c, near, cut);
+fn limited(c: &Compensation, cut: &PacketCut, lane: usize, baseline: f32) -> Rgb {
     let sum = |limit: f32| {
-        let given = cut.clusters.iter().enumerate().map(|(i, cluster)| {
+        let given = cut.clusters.iter().map(|cluster| {
             let node = &c.transfer.trees.nodes[cluster.node as usize];
             let given = node.intensity * cluster.responses.get(lane);
             let max = match node.origin() {
@@ -293,8 +290,7 @@ fn limited(c: &Compensation, cut: &PacketCut, near: &NearSurface, lane: usize, b
                 Origin::Indirect => limit,
             };
             let y = luminance(given);
-            let given = if y > max { given * (max / y) } else { given };
-            factors.as_ref().map_or(given, |factors| given * factors[i])
+            if y > max { given * (max / y) } else { given }
         });
         given.sum::<Rgb>()
     };
@@ -320,7 +316,6 @@ fn mean_irradiance(receivers: &ReceiverPacket, radiance: &[Rgb; LANES]) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::bias_compensation::near_surface::Lack;
     use embree::Ray;
     use glam::Vec3;
     use scene::Camera;
@@ -335,10 +330,8 @@ mod tests {
         let ray = Ray { origin, t_near: 0.0, direction: -Vec3::Z, t_far: f32::INFINITY };
         let surface = world(scene).intersect(&ray).expect("the sheet");
         let place = |normal| SurfacePoint { position: surface.position, normal, geometric_normal: Vec3::Z };
-        let lack = Lack { out: Vec3::Z, kept: 0.0, by_lobes: false };
         let seen = |normal| NearSurface {
             surface,
-            lack,
             distance: 1.0,
             cos: 1.0,
             normal,

@@ -4,7 +4,7 @@
 //! lights close behind a pane stays lost.
 
 use super::Compensation;
-use super::near_surface::{Lack, MAX_LOBE, NearSurface};
+use super::near_surface::NearSurface;
 use base::math::{Frame, LANES, Rgb, lanes_in, luminance};
 use base::sampling::{cosine_hemisphere, owen_sobol_2d};
 use embree::{Hit, Hits16, Ray, Rays16};
@@ -29,13 +29,6 @@ pub struct ClampedPoint {
     pub edges: u16,
 }
 
-impl Compensation<'_> {
-    /// Returns the maximum light of a virtual light of the scene, relative to a diffuse one of the same flux.
-    fn max_of_lobes(&self) -> f32 {
-        if self.transfer.trees.profiles.lobes.is_empty() { 1.0 } else { MAX_LOBE }
-    }
-}
-
 /// Traces `count` rays from each of the first sixteen points. Calls `met` with the number of the point and every
 /// surface with light that virtual lights lack, ray by ray, then in order of the points. Returns the number of rays.
 pub fn trace(
@@ -46,7 +39,7 @@ pub fn trace(
 ) -> u64 {
     let points = &points[..points.len().min(LANES)];
     let reach_sq = |p: &ClampedPoint| {
-        let clamped = if p.bound > 0.0 && p.bound.is_finite() { c.max_of_lobes() / p.bound } else { 0.0 };
+        let clamped = if p.bound > 0.0 && p.bound.is_finite() { 1.0 / p.bound } else { 0.0 };
         clamped.max(if p.direct { c.max_near_sq } else { 0.0 })
     };
     let valid = (0..points.len()).filter(|&l| reach_sq(&points[l]) > 0.0).fold(0u16, |mask, l| mask | 1 << l);
@@ -89,17 +82,15 @@ fn weighed(
     let dist_sq = distance * distance;
     let lit_sq = if point.direct { c.lights.near_sq[hit.geometry as usize] } else { 0.0 };
     // An upper bound of G, before the surface is looked up.
-    if c.max_of_lobes() * cos <= bound * dist_sq && lit_sq <= dist_sq {
+    if cos <= bound * dist_sq && lit_sq <= dist_sq {
         return None;
     }
     let world = c.world;
     let surface = world.surface(hit);
     // Virtual lights radiate by the cosine to the geometric normal.
     let geometry = cos * surface.normal.dot(direction).abs() / dist_sq;
-    let lack = Lack { out: -direction, kept: bound / geometry, by_lobes: false };
     let mut near = NearSurface {
         surface,
-        lack,
         distance,
         cos,
         normal: surface.frame.normal,
@@ -109,10 +100,9 @@ fn weighed(
     if surface.frame.normal.dot(direction) > 0.0 {
         near.normal = -near.normal;
     }
-    if c.max_of_lobes() * geometry > bound {
-        let (bsdf, out) = (world.bsdf(&surface), surface.frame.to_local(-direction));
-        near.lack.by_lobes = bsdf.reflected_lobes(out).next().is_some();
-        near.weight = bsdf.diffuse_albedo(out) * (near.lack.weight() * FRAC_1_PI);
+    if geometry > bound {
+        let out = surface.frame.to_local(-direction);
+        near.weight = world.bsdf(&surface).diffuse_albedo(out) * ((1.0 - bound / geometry) * FRAC_1_PI);
     }
     if lit_sq > dist_sq {
         near.emitted = world.emitted(&surface, -direction) * (1.0 - dist_sq / lit_sq);

@@ -32,7 +32,7 @@ pub use coherence::{CoherenceLimit, OrientedPoint, group_coherent, group_compact
 #[cfg(test)]
 pub use fixtures::gather_all;
 pub use packet::{
-    BRIGHTER, Clamps, Lightcut, PacketCluster, PacketCut, PacketSum, ReceiverPacket, SampledCut,
+    Clamps, Lightcut, PacketCluster, PacketCut, PacketSum, ReceiverPacket, SampledCut,
     SampledSettings, Samples,
 };
 pub use receiver::Receiver;

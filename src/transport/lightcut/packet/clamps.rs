@@ -13,7 +13,7 @@ use base::math::{F32x16, LANES, Lane, Vec3x16, f32x16, lanes_in, luminance};
 
 /// Maximum luminance that a VPL may give, relative to the limit, if geometry terms are limited. A much brighter one
 /// would leave a spot.
-pub const BRIGHTER: f32 = 2.0;
+const BRIGHTER: f32 = 2.0;
 
 /// Limits of the contributions of indirect VPLs to the points of a packet.
 #[derive(Clone, Copy, Debug)]

@@ -34,7 +34,7 @@ mod sum;
 mod tests;
 mod transfer;
 
-pub use clamps::{BRIGHTER, Clamps};
+pub use clamps::Clamps;
 pub use cut::{Lightcut, PacketCluster, PacketCut, PacketSum, Unshadowed};
 pub use receivers::ReceiverPacket;
 pub(super) use refine::halved;
