@@ -78,10 +78,9 @@ impl<'a> CacheFrame<'a> {
         stats: &mut Stats,
     ) {
         let count = self.targets.points.len();
-        let reach = source.settings().farthest();
         let CellLimits { least, least_lacking, .. } = source.cells();
         let least_cell = least.max(1) as usize;
-        let mut level = first_level(count, least_cell, reach);
+        let mut level = first_level(count, least_cell, source.settings().farthest());
         while count >> level >= least_cell {
             for parity in 0..2 {
                 if control.is_cancelled() {
@@ -92,7 +91,6 @@ impl<'a> CacheFrame<'a> {
                         &self.targets,
                         &self.splats,
                         self.cached,
-                        reach,
                         CandidateStep { level, parity, least_lacking },
                     )
                 });

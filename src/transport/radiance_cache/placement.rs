@@ -46,12 +46,11 @@ pub fn missing(
 }
 
 /// Returns the candidates of the cells of a turn. A sibling in the later turn may already be covered by the record of
-/// the earlier one. No footprint is larger than `reach` spacings.
+/// the earlier one.
 pub fn candidates(
     targets: &Targets,
     splats: &DirectIndirect<Splat>,
     cached: DirectIndirect<bool>,
-    reach: f32,
     step: CandidateStep,
 ) -> Vec<Candidate> {
     let CandidateStep { level, parity, least_lacking } = step;
@@ -80,7 +79,6 @@ pub fn candidates(
             let up = level.min(BASELINE_LEVELS_UP);
             candidate.baseline_luminance +=
                 targets.darkest_baseline(targets.index.range(level - up, cell >> up));
-            candidate.clearance = targets.clearance(&candidate.point, reach * candidate.spacing);
             Some(candidate)
         })
         .collect()
@@ -100,7 +98,6 @@ fn candidate(
         cell: 0,
         point: SurfacePoint { position: point.position, normal: point.normal, geometric_normal },
         spacing: point.spacing,
-        clearance: f32::INFINITY,
         coat: point.coat.into(),
         edges: point.edges,
         bands: targets.bands[sample],
@@ -118,7 +115,6 @@ mod tests {
     use crate::lights::Origin;
     use base::math::Rgb;
 
-    const REACH: f32 = 10.0;
     const BOTH: DirectIndirect<bool> = DirectIndirect { direct: true, indirect: true };
 
     fn splats(targets: &Targets, records: &Records) -> DirectIndirect<Splat> {
@@ -147,7 +143,6 @@ mod tests {
                     &targets,
                     &splats,
                     BOTH,
-                    REACH,
                     CandidateStep { level, parity, least_lacking: 0.0 },
                 );
                 assert_eq!(found.len(), (1 << level) / 2 + usize::from(level == 0));
@@ -183,7 +178,6 @@ mod tests {
                         &targets,
                         &splats,
                         cached,
-                        REACH,
                         CandidateStep { level: 10, parity, least_lacking: 0.0 },
                     )
                 })
@@ -205,7 +199,6 @@ mod tests {
             &targets,
             &splats,
             one(Origin::Direct),
-            REACH,
             CandidateStep { level: 0, parity: 0, least_lacking: 0.0 },
         );
         assert!(coarse.len() == 1 && (coarse[0].point.position - Vec3::new(0.75, 0.5, 0.0)).length() < 0.04);
@@ -219,13 +212,13 @@ mod tests {
         let cached = DirectIndirect { direct: false, indirect: true };
         let count = |level, least_lacking| -> usize {
             let step = |parity| CandidateStep { level, parity, least_lacking };
-            (0..2).map(|parity| candidates(&targets, &splats, cached, REACH, step(parity)).len()).sum()
+            (0..2).map(|parity| candidates(&targets, &splats, cached, step(parity)).len()).sum()
         };
         // Half of the floor is covered: cells of one sample are covered, or lack all light.
         let root = CandidateStep { level: 0, parity: 0, least_lacking: 0.51 };
-        assert!(candidates(&targets, &splats, cached, REACH, root).is_empty());
+        assert!(candidates(&targets, &splats, cached, root).is_empty());
         assert_eq!(
-            candidates(&targets, &splats, cached, REACH, CandidateStep { least_lacking: 0.5, ..root }).len(),
+            candidates(&targets, &splats, cached, CandidateStep { least_lacking: 0.5, ..root }).len(),
             1
         );
         assert_eq!([0.0, 0.25, 1.0].map(|least| count(10, least)), [512; 3]);
@@ -246,7 +239,6 @@ mod tests {
                 &targets,
                 &splats,
                 BOTH,
-                REACH,
                 CandidateStep { level: 6, parity, least_lacking: 0.0 },
             ) {
                 let cell = floor.index.range(6, 0).len();
@@ -266,7 +258,6 @@ mod tests {
             &targets,
             &splats,
             BOTH,
-            REACH,
             CandidateStep { level: 0, parity: 0, least_lacking: 0.0 },
         );
         assert_eq!(coarse[0].baseline_luminance, 0.0);
@@ -304,7 +295,6 @@ mod tests {
             &targets,
             &splats,
             BOTH,
-            REACH,
             CandidateStep { level: 0, parity: 0, least_lacking: 0.0 },
         );
         assert!(found.len() == 1 && found[0].sample == 11);
