@@ -41,7 +41,7 @@ pub struct ScatteredEdges {
 /// Light samples at a chain end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LightSamples {
-    /// Number of light samples at ends with a throughput of at least [`LightSamples::MIN_THROUGHPUT`].
+    /// Number of light samples.
     pub count: u32,
     /// Offset of the first one in the sequence of light samples.
     pub first: u32,
@@ -50,8 +50,6 @@ pub struct LightSamples {
 impl LightSamples {
     /// One light sample.
     pub const ONE: LightSamples = LightSamples { count: 1, first: 0 };
-    /// Minimum throughput of an end for more than one light sample.
-    pub const MIN_THROUGHPUT: f32 = 0.5;
 }
 
 impl Default for ScatteredEdges {

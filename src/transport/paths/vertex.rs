@@ -119,19 +119,12 @@ impl Packet {
         let unlit = (scattered & !at.glossy) | if R::ONLY_BY_SPECULAR_LOBES { at_end } else { 0 };
         let lit = at.bsdfs.smooth() & at.found & !unlit;
         let requested = policy.light_samples();
-        let many =
-            if requested == LightSamples::ONE { 0 } else { lit & at_end & self.bright_enough(requested) };
+        let many = if requested == LightSamples::ONE { 0 } else { lit & at_end };
         let mut light_samples = [1.0; LANES];
         lanes_in(many).for_each(|lane| light_samples[lane] = requested.count as f32);
         let share = if at_end != 0 { policy.edges().guided } else { 0.0 };
         let guided = Guided { lanes: if share > 0.0 { at_end & at.bsdfs.lambertian() } else { 0 }, share };
         Roles { at_end, scattered, lit, many, light_samples, guided }
-    }
-
-    /// Returns the lanes whose surface gets all of these light samples.
-    fn bright_enough(&self, samples: LightSamples) -> u16 {
-        let least = if samples.count > 1 { LightSamples::MIN_THROUGHPUT } else { 0.0 };
-        mask_of(&std::array::from_fn(|lane| u32::from(self.throughput.get(lane).max_element() >= least)))
     }
 
     /// Returns the generators of a light sample. Lanes that take many divide their sequences among them.
