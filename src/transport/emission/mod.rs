@@ -1,8 +1,7 @@
 //! Photons: paths that begin at the emitters of a scene.
 //!
 //! - [`PhotonEmitter`] begins paths at an emitter; [`target`] and [`lit_sphere`] direct them at the scene;
-//! - [`plan`] holds the shares of paths by emitter and their aims. [`planning`] makes a plan from pilot paths, and
-//!   [`openings`] aims paths from infinitely far;
+//! - [`plan`] holds the shares of paths by emitter and their aims. [`openings`] aims paths from infinitely far;
 //! - [`walk`] goes from surface to surface; [`tracing`] walks the paths of a plan, and [`trace_photons`] traces as many
 //!   as are wanted.
 
@@ -16,7 +15,6 @@ mod openings_tests;
 mod photon;
 mod photons;
 mod plan;
-mod planning;
 mod sample;
 mod target;
 mod tracing;

@@ -3,7 +3,7 @@
 use super::openings::Openings;
 use super::plan::EmitterPlan;
 use super::{PhotonCounts, PhotonEmitter, PhotonSettings, trace_photons};
-use crate::lights::{LightPassSettings, Origin, light_pass};
+use crate::lights::{LightPassSettings, light_pass};
 use base::math::{Rgb, luminance};
 use base::progress::Control;
 use base::sampling::Sampler;
@@ -78,14 +78,12 @@ fn aimed_photons_carry_the_flux_of_others_and_vary_less() {
     };
     let gain = flux(&world, &floor, 0).1.gain;
     assert!(gain > 2.0, "{gain}");
-    // As many photons as the gain makes them good for.
-    let share = 2.0 / gain;
     for side in 0..2 {
         let ((even, even_variance), (aimed, aimed_variance)) = (moments(&[], side), moments(&floor, side));
         let error = ((even_variance + aimed_variance) / SEEDS as f32).sqrt();
         assert!((aimed - even).abs() < 4.0 * error, "{aimed} for {even} ± {error}");
         assert!(error < 0.04 * even, "{error} of {even}");
-        assert!(share * aimed_variance < 0.7 * even_variance, "{share} {aimed_variance} {even_variance}");
+        assert!(aimed_variance < 0.7 * even_variance, "{aimed_variance} {even_variance}");
     }
 }
 
@@ -96,8 +94,9 @@ fn aimed_paths_have_the_flux_of_sky_and_suns() {
     const CHUNKS: u32 = 64;
     let world = room_with_window();
     let emitter = PhotonEmitter::new(&world).expect("there is a sky");
-    let aims = Openings::new(&world, &emitter.target, &floor(), 0).expect("there is a window");
-    let plan = EmitterPlan::aimed(&emitter, aims, 0);
+    let aims = Openings::new(&world, &emitter.target, &floor(), 0);
+    assert!(aims.is_some(), "there is a window");
+    let plan = EmitterPlan::new(&emitter, aims);
     // The sun: half angle 0.005 rad, radiance 2e4.
     let disc = PI * 0.005 * 0.005 * 2e4;
     let irradiance = 4.0 * PI * 0.5 + disc + 0.5;
@@ -138,14 +137,4 @@ fn photons_are_not_aimed_where_they_come_anyway() {
             assert!(a.vpls == b.vpls && a.intensities == b.intensities);
         }
     }
-}
-
-#[test]
-fn fewer_photons_are_traced_where_they_are_aimed() {
-    let world = room_with_window();
-    let settings = LightPassSettings { indirect: 100_000, ..LightPassSettings::default() };
-    let aimed = light_pass(&world, &settings, &floor(), 8, &Control::new());
-    let count =
-        aimed.sets.iter().filter(|set| set.origin == Origin::Indirect).map(|s| s.len()).sum::<usize>();
-    assert!((25_000..80_000).contains(&count), "{count}");
 }

@@ -14,7 +14,7 @@ pub struct PhotonCounts {
     pub paths: u64,
     /// Number of closest-hit queries.
     pub rays: u64,
-    /// Number of unaimed photons that are as good as one of these photons; 0 if none is aimed.
+    /// Number of unaimed paths that are as good as one aimed path; 0 if none is aimed.
     pub gain: f32,
 }
 
@@ -51,7 +51,7 @@ pub struct PhotonHit<'a> {
 #[derive(Clone, Copy, Debug)]
 pub struct PhotonSettings<'a> {
     /// Approximate number of photons. Whole chunks of paths are traced, so there may be a few more. There are fewer if
-    /// few paths hit a surface, or if paths are aimed.
+    /// few paths hit a surface.
     pub photons: u32,
     /// Points whose indirect light is wanted; if empty, photons are not aimed.
     pub seen: &'a [SurfacePoint],

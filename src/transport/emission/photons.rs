@@ -3,7 +3,8 @@
 //! Paths run in chunks of fixed size and are kept in order, so the photons are the same for any number of threads.
 //! Units: flux in watts, to be divided by the number of paths.
 
-use super::planning::plan;
+use super::openings::Openings;
+use super::plan::EmitterPlan;
 use super::tracing::{CHUNK, PathTracer, PhotonChunk};
 use super::walk::MAX_EDGES;
 use super::{PhotonCounts, PhotonEmitter, PhotonHit, PhotonSettings};
@@ -45,11 +46,12 @@ pub fn trace_in_parts<T: Send>(
         Some(emitter) if settings.photons > 0 && max_edges > 0 && world.specular.store_light() => emitter,
         _ => return (Vec::new(), PhotonCounts::default()),
     };
-    let planned = plan(&emitter, settings, max_edges);
-    let mut counts = PhotonCounts { paths: 0, rays: planned.rays, gain: planned.gain };
-    let wanted = planned.plan.photons;
+    let plan = EmitterPlan::new(&emitter, Openings::new(world, &emitter.target, settings.seen, settings.seed));
+    let gain = plan.aims.as_ref().map_or(0.0, |aims| aims.gain);
+    let mut counts = PhotonCounts { paths: 0, rays: 0, gain };
+    let wanted = settings.photons as usize;
     let seed = hash(settings.seed, 0x1d1d);
-    let tracer = PathTracer { emitter: &emitter, plan: &planned.plan, seed, max_edges };
+    let tracer = PathTracer { emitter: &emitter, plan: &plan, seed, max_edges };
     let max_chunks = (settings.photons.saturating_mul(PATHS_PER_PHOTON) / CHUNK).max(FIRST_WAVE);
     let mut parts = Vec::new();
     let (mut found, mut chunks) = (0, 0);

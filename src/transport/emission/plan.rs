@@ -1,4 +1,4 @@
-//! Plan of photon tracing: shares of the paths by emitter, aims of paths from infinitely far, and number of photons.
+//! Plan of photon tracing: shares of the paths by emitter, and aims of paths from infinitely far.
 
 use super::openings::Openings;
 use super::{EmissionNumbers, EmissionSample, PhotonEmitter};
@@ -17,25 +17,22 @@ pub(super) struct EmitterPlan<'w> {
     far_share: f32,
     /// Aims of paths from infinitely far; `None` if these paths go anywhere.
     pub aims: Option<Openings<'w>>,
-    /// Number of photons to trace.
-    pub photons: usize,
 }
 
 impl<'w> EmitterPlan<'w> {
-    /// Creates the plan without aims: paths in proportion to the flux of emitters, but for [`MIN_SHARE`].
-    pub fn by_power(emitter: &PhotonEmitter, photons: usize) -> EmitterPlan<'w> {
-        let by_paths = with_shares(emitter, emitter.by_power.clone());
-        EmitterPlan { far_share: far_share(emitter, &by_paths), by_paths, aims: None, photons }
-    }
-
-    /// Creates the plan with aims. Emitters that are infinitely far have fewer paths, by the gain of the aims.
-    pub fn aimed(emitter: &PhotonEmitter, aims: Openings<'w>, photons: usize) -> EmitterPlan<'w> {
-        let weight = |index: usize| {
-            emitter.by_power.probability(index) / if emitter.is_far(index) { aims.gain } else { 1.0 }
+    /// Creates the plan: paths in proportion to the flux of emitters, but for [`MIN_SHARE`]. Emitters that are
+    /// infinitely far have fewer paths, by the gain of the `aims`.
+    pub fn new(emitter: &PhotonEmitter, aims: Option<Openings<'w>>) -> EmitterPlan<'w> {
+        let by_power = &emitter.by_power;
+        let fewer = |gain: f32| {
+            let divisor = |index| if emitter.is_far(index) { gain } else { 1.0 };
+            DiscreteDistribution::new(
+                (0..by_power.len()).map(|index| by_power.probability(index) / divisor(index)),
+            )
         };
-        let by_paths = DiscreteDistribution::new((0..emitter.by_power.len()).map(weight));
+        let by_paths = aims.as_ref().map_or_else(|| by_power.clone(), |aims| fewer(aims.gain));
         let by_paths = with_shares(emitter, by_paths);
-        EmitterPlan { far_share: far_share(emitter, &by_paths), by_paths, aims: Some(aims), photons }
+        EmitterPlan { far_share: far_share(emitter, &by_paths), by_paths, aims }
     }
 
     /// Samples the beginning of a path; `None` if the emitter is dark there.

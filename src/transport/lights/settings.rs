@@ -17,7 +17,7 @@ settings! {
         /// Approximate number of virtual point lights for indirect light, from at least 1024 light paths. 0 computes
         /// only direct light.
         ///
-        /// Photons are aimed at openings through which light of sky and sun enters. As few as a quarter are made then.
+        /// Photons are aimed at openings through which light of sky and sun enters.
         indirect: u32 = 300_000 => [.named("vpls").at_least(0.0).scaled(&FACTORS).judged_by(JudgedBy::Light)];
         /// Seed of the VPLs.
         seed: u32 = 0;
