@@ -200,9 +200,10 @@ impl EnvironmentLight {
         if let Some(sample) = self.sample_even(u) {
             return Some(sample);
         }
-        let (tile, rest) = self.by_flux.sample(u.x);
+        let (tiles, rest) = TileTable::sample(&self.tables(None), &[u.x; LANES], 1);
+        let (tile, u) = (tiles[0], Vec2::new(rest[0], u.y));
         let mut chosen = [TileSample::default(); LANES];
-        chosen[0] = TileSample { tile, u: Vec2::new(rest, u.y), density: self.by_flux.density(tile) };
+        chosen[0] = TileSample { tile, u, density: self.by_flux.density(tile) };
         let sample = self.sample_tiles(&chosen, 1)[0]?;
         if self.discs.around(sample.direction).next().is_none() {
             return Some(sample);
@@ -240,7 +241,7 @@ impl EnvironmentLight {
             return samples;
         }
         let tables = self.tables(learned);
-        let (tiles, rest) = TileTable::sample16(&tables, &u.x, wanted);
+        let (tiles, rest) = TileTable::sample(&tables, &u.x, wanted);
         let stored = learned.map_or(&self.presamples, |at| at.presamples);
         let positions = each(wanted, |i| stored.find(tiles[i], Vec2::new(rest[i], u.y[i])));
         // Short loops, so that many lanes wait for memory at once.
@@ -269,7 +270,7 @@ impl EnvironmentLight {
 
     /// Chooses sixteen tiles as is learned of one place, by numbers in [0, 1).
     pub fn tiles_by(&self, learned: &LearnedAt, u: &F32x16) -> [usize; LANES] {
-        TileTable::sample16(&learned.tables, u, u16::MAX).0
+        TileTable::sample(&learned.tables, u, u16::MAX).0
     }
 
     /// Returns one of the directions that were sampled beforehand in each of sixteen tiles; `None` in tiles without

@@ -39,18 +39,10 @@ impl TileTable {
         TileTable { firsts: lines(&firsts), cumulative, total: sum as f32, density }
     }
 
-    /// Returns the tile at `u` in [0, 1), and `u` rescaled to [0, 1) within it.
+    /// Returns the tiles at the numbers `u` in [0, 1) of the lanes of `wanted`, and the numbers rescaled to [0, 1)
+    /// within them. The lanes wait for memory together, because the tables of many regions exceed the caches.
     #[inline]
-    pub fn sample(&self, u: f32) -> (usize, f32) {
-        let u = u * self.total;
-        let line = self.line_at(u);
-        self.tile_in(line, &self.cumulative[line], u)
-    }
-
-    /// Returns [`TileTable::sample`] of the tables and numbers in the lanes of `wanted`. The lanes wait for memory
-    /// together, because the tables of many regions exceed the caches.
-    #[inline]
-    pub fn sample16(tables: &[&TileTable; LANES], u: &F32x16, wanted: u16) -> ([usize; LANES], F32x16) {
+    pub fn sample(tables: &[&TileTable; LANES], u: &F32x16, wanted: u16) -> ([usize; LANES], F32x16) {
         let (mut places, mut numbers) = ([0; LANES], [0.0; LANES]);
         for i in lanes_in(wanted) {
             numbers[i] = u[i] * tables[i].total;
