@@ -6,7 +6,7 @@
 
 use super::tiles::Grid;
 use crate::light::DiscreteDistribution;
-use base::math::{LANES, Rgb, lanes_in, luminance};
+use base::math::{Rgb, luminance};
 use glam::{Vec2, Vec3};
 use scene::EnvironmentMap;
 use std::f32::consts::{FRAC_1_PI, PI, TAU};
@@ -133,23 +133,6 @@ impl Map {
     #[inline]
     pub fn corners(&self, column: usize, row: usize) -> Corners {
         self.texels(column, row).map(|i| self.map.radiance[i])
-    }
-
-    /// Returns [`Map::corners`] at points in the lanes of `wanted`. The reads have loops of their own, which are short
-    /// enough for the processor to look ahead over all lanes, because a large map exceeds the caches.
-    #[inline]
-    pub fn corners16(&self, points: &[CellPoint; LANES], wanted: u16) -> [Corners; LANES] {
-        let (mut texels, mut corners) = ([[0; 4]; LANES], [Corners::default(); LANES]);
-        for i in lanes_in(wanted) {
-            texels[i] = self.texels(points[i].column, points[i].row);
-        }
-        for [above, below] in [[0, 2], [1, 3]] {
-            for i in lanes_in(wanted) {
-                corners[i][above] = self.map.radiance[texels[i][above]];
-                corners[i][below] = self.map.radiance[texels[i][below]];
-            }
-        }
-        corners
     }
 
     /// Returns the indices of the texels at a cell's corners.

@@ -177,8 +177,9 @@ impl EnvironmentLight {
             }
             SkySource::Map(map) => map,
         };
+        // Short loops, so that the lanes wait for memory together.
         let places = each(wanted, |i| map.locate(d.get(i)));
-        let corners = map.corners16(&places, wanted);
+        let corners = each(wanted, |i| map.corners(places[i].column, places[i].row));
         let tiles = each(wanted, |i| self.tiles.of_cell(places[i].column, places[i].row));
         let tables = self.tables(learned);
         let of_tiles = each(wanted, |i| tables[i].density(tiles[i]));
@@ -340,7 +341,7 @@ impl EnvironmentLight {
             directions[i] = map.direction_at(z, x);
             map.place_at(z, x)
         });
-        let corners = map.corners16(&places, wanted);
+        let corners = each(wanted, |i| map.corners(places[i].column, places[i].row));
         each(wanted, |i| {
             let (place, direction) = (places[i], directions[i]);
             let radiance = bilinear(&corners[i], place.f);
