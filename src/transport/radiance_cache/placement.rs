@@ -5,7 +5,7 @@
 //! index: the sample nearest to the middle of the uncovered samples in the cell.
 //!
 //! Known light masks the errors of a record, as the other layer does in section 6. Sampled direct light counts only as
-//! far as the darkest part of the record's neighbourhood has it.
+//! far as the darkest part of the record's cell has it.
 
 use super::cells::Candidate;
 use super::splat::Splat;
@@ -15,9 +15,6 @@ use base::math::luminance;
 use glam::Vec3;
 use rayon::prelude::*;
 use world::SurfacePoint;
-
-/// Levels up from a cell to the one whose darkest part the errors of its record are judged against.
-const BASELINE_LEVELS_UP: u32 = 2;
 
 /// Cells of the index that get candidates in one step: every second cell of a level, so that siblings take turns.
 #[derive(Clone, Copy, Debug)]
@@ -75,10 +72,7 @@ pub fn candidates(
             let mut candidate =
                 candidate(targets, splats, sample, missing(targets, splats, cached, sample, 0.0));
             candidate.cell = (targets.points.len() >> level) as u32;
-            // The footprint may reach beyond the cell.
-            let up = level.min(BASELINE_LEVELS_UP);
-            candidate.baseline_luminance +=
-                targets.darkest_baseline(targets.index.range(level - up, cell >> up));
+            candidate.baseline_luminance += targets.darkest_baseline(targets.index.range(level, cell));
             Some(candidate)
         })
         .collect()
@@ -242,8 +236,8 @@ mod tests {
                 CandidateStep { level: 6, parity, least_lacking: 0.0 },
             ) {
                 let cell = floor.index.range(6, 0).len();
-                let wider = floor.index.range(4, found.sample as usize / (4 * cell));
-                if wider.clone().all(lit) {
+                let range = floor.index.range(6, found.sample as usize / cell);
+                if range.clone().all(lit) {
                     let expected = std::f32::consts::PI * reflected / albedo;
                     assert!((found.baseline_luminance / expected - 1.0).abs() < 1e-4);
                     bright += 1;
