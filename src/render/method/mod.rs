@@ -24,7 +24,7 @@ pub use scale::{Demand, LEVELS, Move, SPP, ScaleLimits};
 
 // Parts of the methods' settings.
 pub use transport::lightcut::CutSettings;
-pub use transport::lights::{LightPassSettings};
+pub use transport::lights::LightPassSettings;
 pub use transport::paths::Estimand;
 pub use transport::radiance_cache::retained::{RetainedRecords, RetentionLimits};
 pub use transport::radiance_cache::{CacheSettings, DirectBy, Footprints, FoundBy};

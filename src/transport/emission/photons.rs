@@ -46,7 +46,8 @@ pub fn trace_in_parts<T: Send>(
         Some(emitter) if settings.photons > 0 && max_edges > 0 && world.specular.store_light() => emitter,
         _ => return (Vec::new(), PhotonCounts::default()),
     };
-    let plan = EmitterPlan::new(&emitter, Openings::new(world, &emitter.target, settings.seen, settings.seed));
+    let plan =
+        EmitterPlan::new(&emitter, Openings::new(world, &emitter.target, settings.seen, settings.seed));
     let gain = plan.aims.as_ref().map_or(0.0, |aims| aims.gain);
     let mut counts = PhotonCounts { paths: 0, rays: 0, gain };
     let wanted = settings.photons as usize;

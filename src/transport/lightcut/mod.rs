@@ -32,8 +32,8 @@ pub use coherence::{CoherenceLimit, OrientedPoint, group_coherent, group_compact
 #[cfg(test)]
 pub use fixtures::gather_all;
 pub use packet::{
-    Clamps, Lightcut, PacketCluster, PacketCut, PacketSum, ReceiverPacket, SampledCut,
-    SampledSettings, Samples,
+    Clamps, Lightcut, PacketCluster, PacketCut, PacketSum, ReceiverPacket, SampledCut, SampledSettings,
+    Samples,
 };
 pub use receiver::Receiver;
 pub use reconstruction::ReconstructionCut;

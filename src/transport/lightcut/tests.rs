@@ -22,8 +22,7 @@ fn vpls_of_a_furnace_give_the_irradiance_of_the_geometric_series() {
     let world = world(scene);
     let settings = LightPassSettings { direct: 6000, indirect: 40_000, seed: 3 };
     let lights = light_pass(&world, &settings, &[], u32::MAX, &Control::new());
-    let trees =
-        LightTrees::build(&lights.sets, lights.profiles, world.diagonal, &Control::new());
+    let trees = LightTrees::build(&lights.sets, lights.profiles, world.diagonal, &Control::new());
     let transfer = Transfer::new(&trees, world.diagonal);
     let expected = PI * emitted / (Rgb::ONE - albedo);
     for normal in [Vec3::Y, -Vec3::X, Vec3::new(1.0, 1.0, 1.0).normalize()] {
@@ -45,8 +44,7 @@ fn cuts_in_a_scene_with_shadows_are_within_their_error() {
     let world = room_with_ball(Some(diffuse(Rgb::splat(0.5))));
     let settings = LightPassSettings { direct: 1024, indirect: 19_000, seed: 1 };
     let lights = light_pass(&world, &settings, &[], u32::MAX, &Control::new());
-    let trees =
-        LightTrees::build(&lights.sets, lights.profiles.clone(), world.diagonal, &Control::new());
+    let trees = LightTrees::build(&lights.sets, lights.profiles.clone(), world.diagonal, &Control::new());
     let transfer = Transfer::new(&trees, world.diagonal);
     let settings = CutSettings { clamp: None, max_cut: usize::MAX, ..CutSettings::default() };
     let mut cut = Lightcut::new();
@@ -60,8 +58,7 @@ fn cuts_in_a_scene_with_shadows_are_within_their_error() {
             let exact = luminance(gather_all(&transfer, &Engine::new(&world), &receiver));
             if exact > 0.0 {
                 let estimate = luminance(
-                    cut.gather(&transfer, &Engine::new(&world), &alone(receiver), &settings).sum.radiance
-                        [0],
+                    cut.gather(&transfer, &Engine::new(&world), &alone(receiver), &settings).sum.radiance[0],
                 );
                 squares += (estimate / exact - 1.0).powi(2);
                 n += 1;

@@ -133,12 +133,8 @@ mod tests {
         for level in 0..6 {
             let mut cells = Vec::new();
             for parity in 0..2 {
-                let found = candidates(
-                    &targets,
-                    &splats,
-                    BOTH,
-                    CandidateStep { level, parity, least_lacking: 0.0 },
-                );
+                let found =
+                    candidates(&targets, &splats, BOTH, CandidateStep { level, parity, least_lacking: 0.0 });
                 assert_eq!(found.len(), (1 << level) / 2 + usize::from(level == 0));
                 for (pair, candidate) in found.iter().enumerate() {
                     let cell = if level == 0 { 0 } else { 2 * pair + parity };
@@ -229,12 +225,9 @@ mod tests {
         let albedo = luminance(floor.points.surfaces.get(0).bsdf.base_brdf() * std::f32::consts::PI);
         let (mut bright, mut dark) = (0, 0);
         for parity in 0..2 {
-            for found in candidates(
-                &targets,
-                &splats,
-                BOTH,
-                CandidateStep { level: 6, parity, least_lacking: 0.0 },
-            ) {
+            for found in
+                candidates(&targets, &splats, BOTH, CandidateStep { level: 6, parity, least_lacking: 0.0 })
+            {
                 let cell = floor.index.range(6, 0).len();
                 let range = floor.index.range(6, found.sample as usize / cell);
                 if range.clone().all(lit) {
@@ -248,12 +241,8 @@ mod tests {
             }
         }
         assert_eq!((bright, dark), (32, 0), "the middle of the floor divides cells of that level");
-        let coarse = candidates(
-            &targets,
-            &splats,
-            BOTH,
-            CandidateStep { level: 0, parity: 0, least_lacking: 0.0 },
-        );
+        let coarse =
+            candidates(&targets, &splats, BOTH, CandidateStep { level: 0, parity: 0, least_lacking: 0.0 });
         assert_eq!(coarse[0].baseline_luminance, 0.0);
     }
 
@@ -285,12 +274,8 @@ mod tests {
         targets.cacheable.fill(false);
         targets.cacheable[11] = true;
         let splats = splats(&targets, &Records::default());
-        let found = candidates(
-            &targets,
-            &splats,
-            BOTH,
-            CandidateStep { level: 0, parity: 0, least_lacking: 0.0 },
-        );
+        let found =
+            candidates(&targets, &splats, BOTH, CandidateStep { level: 0, parity: 0, least_lacking: 0.0 });
         assert!(found.len() == 1 && found[0].sample == 11);
     }
 }

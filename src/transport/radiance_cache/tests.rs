@@ -72,8 +72,7 @@ fn extrapolate(world: &WorldAndView, footprints: Footprints, probe_rays: u32) ->
     let light = LightPassSettings { indirect: 20_000, ..LightPassSettings::default() };
     let mut pass = light_pass(world, &light, &[], 8, &Control::new());
     pass.sets.retain(|set| set.origin == Origin::Indirect);
-    let trees =
-        LightTrees::build(&pass.sets, pass.profiles, world.diagonal, &Control::new());
+    let trees = LightTrees::build(&pass.sets, pass.profiles, world.diagonal, &Control::new());
     let transfer = Transfer::new(&trees, world.diagonal);
     let cut = CutSettings { epsilon: 0.002, max_cut: 20_000, clamp: None, ..CutSettings::default() };
     let settings =

@@ -6,7 +6,7 @@ use crate::method::sampling::method_settings;
 use base::setting::{COMPENSATION, INSPECT, PATCHES, SHARE};
 use transport::eye::{DirectSampling, ExtraSamples, Settled};
 use transport::lightcut::{CutSettings, Samples};
-use transport::lights::{LightPassSettings};
+use transport::lights::LightPassSettings;
 use transport::radiance_cache::glossy::Glossy;
 use transport::radiance_cache::{CLAMP, CacheSettings, DirectBy, FoundBy, MAX_CUT};
 use transport::shade::ShadeSettings;

@@ -18,12 +18,8 @@ fn no_member_contributes_more_than_the_clusters_bound() {
         let mut numbers = RandomNumbers(round << 20);
         let scale = [1e-6, 1.0, 1e6][round as usize % 3];
         let diagonal = scale * 2.0;
-        let trees = LightTrees::build(
-            &all_kinds(60, scale, &mut numbers),
-            profiles(),
-            diagonal,
-            &Control::new(),
-        );
+        let trees =
+            LightTrees::build(&all_kinds(60, scale, &mut numbers), profiles(), diagonal, &Control::new());
         let transfer = Transfer::new(&trees, diagonal);
         let mut points = ReceiverPacket::new();
         for _ in 0..2 {
@@ -85,8 +81,7 @@ fn relative_errors(trees: &LightTrees, settings: &CutSettings, rays: &impl Visib
 fn cuts_are_within_their_error_and_shrink_with_epsilon() {
     let set = room(20_000, &mut RandomNumbers(1));
     let ball = Ball { centre: Vec3::splat(0.5), radius: 0.25 };
-    let trees =
-        LightTrees::build(std::slice::from_ref(&set), Vec::new(), 3f32.sqrt(), &Control::new());
+    let trees = LightTrees::build(std::slice::from_ref(&set), Vec::new(), 3f32.sqrt(), &Control::new());
     let at = |epsilon| {
         let (errors, size) = relative_errors(&trees, &CutSettings { epsilon, ..EXACT }, &ball);
         (rms(&errors), size)
@@ -122,24 +117,14 @@ fn no_cluster_gives_more_than_a_quarter_however_coarse_the_cut() {
 #[test]
 fn with_no_tolerance_the_cut_is_the_full_sum() {
     let mut numbers = RandomNumbers(5);
-    let trees = LightTrees::build(
-        &all_kinds(300, 1.0, &mut numbers),
-        profiles(),
-        2.0,
-        &Control::new(),
-    );
+    let trees = LightTrees::build(&all_kinds(300, 1.0, &mut numbers), profiles(), 2.0, &Control::new());
     let (errors, _) = relative_errors(&trees, &CutSettings { epsilon: 0.0, ..EXACT }, &Unoccluded);
     assert!(errors.iter().all(|e| e.abs() < 1e-4), "{errors:?}");
 }
 
 #[test]
 fn the_cap_is_respected_and_counted() {
-    let trees = LightTrees::build(
-        &[room(5000, &mut RandomNumbers(2))],
-        Vec::new(),
-        1.7,
-        &Control::new(),
-    );
+    let trees = LightTrees::build(&[room(5000, &mut RandomNumbers(2))], Vec::new(), 1.7, &Control::new());
     let settings = CutSettings { epsilon: 0.001, max_cut: 77, clamp: None, origin: None };
     let transfer = Transfer::new(&trees, 1.7);
     let point = alone(Receiver::irradiance(Vec3::splat(0.4), Vec3::Y, &Frame::from_normal(Vec3::Y)));
@@ -211,9 +196,8 @@ fn the_same_room_at_any_scale_gives_the_same_cut() {
 fn a_weak_singularity_is_clamped_once_and_lights_are_not() {
     let mut set = room(2000, &mut RandomNumbers(4));
     let x = Vec3::new(0.5, 0.5, 0.5);
-    let trees_of = |set: &VplSet| {
-        LightTrees::build(std::slice::from_ref(set), Vec::new(), 1.7, &Control::new())
-    };
+    let trees_of =
+        |set: &VplSet| LightTrees::build(std::slice::from_ref(set), Vec::new(), 1.7, &Control::new());
     let settings = CutSettings { epsilon: 0.002, max_cut: 100_000, clamp: Some(0.02), origin: None };
     let without = luminance(irradiance(&trees_of(&set), 1.7, x, &settings));
     set.push(Vpl::oriented(x + Vec3::Y * 1e-3, -Vec3::Y), Rgb::splat(0.1));
@@ -243,12 +227,7 @@ fn few_vpls_share_the_light_and_lose_none_of_it_while_it_is_refined() {
 #[test]
 fn an_unlit_node_is_no_node() {
     // The gap behind each root is never reached.
-    let trees = LightTrees::build(
-        &[room(7, &mut RandomNumbers(6))],
-        Vec::new(),
-        1.7,
-        &Control::new(),
-    );
+    let trees = LightTrees::build(&[room(7, &mut RandomNumbers(6))], Vec::new(), 1.7, &Control::new());
     let blank = |n: &&LightNode| n.intensity == Rgb::ZERO;
     assert_eq!(trees.nodes.iter().filter(blank).count(), 1);
     assert_eq!(trees.leaves().count(), 7);

@@ -89,12 +89,7 @@ fn errors(settings: &CutSettings) -> Vec<f32> {
     let scene = all_materials();
     let materials = Materials::new(&scene);
     let ball = Ball { centre: Vec3::splat(0.5), radius: 0.25 };
-    let trees = LightTrees::build(
-        &[room(20_000, &mut RandomNumbers(1))],
-        Vec::new(),
-        1.73,
-        &Control::new(),
-    );
+    let trees = LightTrees::build(&[room(20_000, &mut RandomNumbers(1))], Vec::new(), 1.73, &Control::new());
     let transfer = Transfer::new(&trees, 1.73);
     let (mut cut, mut points) = (Lightcut::new(), ReceiverPacket::new());
     let mut numbers = RandomNumbers(77);
@@ -184,12 +179,7 @@ fn lanes_clamp_as_single_points_do() {
 fn the_cap_holds_for_the_packet() {
     let scene = all_materials();
     let materials = Materials::new(&scene);
-    let trees = LightTrees::build(
-        &[room(5000, &mut RandomNumbers(2))],
-        Vec::new(),
-        1.7,
-        &Control::new(),
-    );
+    let trees = LightTrees::build(&[room(5000, &mut RandomNumbers(2))], Vec::new(), 1.7, &Control::new());
     let mut points = ReceiverPacket::new();
     points.set(neighbours(&materials, &scene, 1.0, 16, &mut RandomNumbers(3)));
     let settings = CutSettings { epsilon: 1e-4, max_cut: 77, clamp: None, origin: None };

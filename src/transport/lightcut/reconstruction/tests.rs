@@ -3,7 +3,7 @@
 use super::*;
 use crate::lightcut::fixtures::{Ball, EXACT, RandomNumbers, rms, room};
 use crate::lightcut::{Lightcut, Receiver};
-use crate::lights::{LightTrees};
+use crate::lights::LightTrees;
 use base::math::{Frame, LANES, luminance};
 use base::progress::Control;
 use glam::Vec3;
@@ -19,8 +19,7 @@ fn lattice(count: usize) -> Vec<Receiver<'static>> {
 fn points_gather_nearly_the_light_of_cuts_of_their_own() {
     let mut numbers = RandomNumbers(77);
     let ball = Ball { centre: Vec3::new(0.5, 0.5, 0.6), radius: 0.15 };
-    let trees =
-        LightTrees::build(&[room(3000, &mut numbers)], Vec::new(), 1.7, &Control::new());
+    let trees = LightTrees::build(&[room(3000, &mut numbers)], Vec::new(), 1.7, &Control::new());
     let transfer = Transfer::new(&trees, 1.7);
     let receivers = lattice(32);
     let (mut packet, mut points) = (Lightcut::new(), ReceiverPacket::new());
@@ -47,8 +46,7 @@ fn sampled_clusters_are_right_on_average() {
     // Half in the shadow of a ball: the anchors disagree about many small clusters.
     let mut numbers = RandomNumbers(78);
     let ball = Ball { centre: Vec3::new(0.5, 0.5, 0.25), radius: 0.15 };
-    let trees =
-        LightTrees::build(&[room(3000, &mut numbers)], Vec::new(), 1.7, &Control::new());
+    let trees = LightTrees::build(&[room(3000, &mut numbers)], Vec::new(), 1.7, &Control::new());
     let transfer = Transfer::new(&trees, 1.7);
     let receivers = lattice(64);
     let (mut packet, mut points) = (Lightcut::new(), ReceiverPacket::new());

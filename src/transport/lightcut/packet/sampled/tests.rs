@@ -5,7 +5,7 @@ use crate::lightcut::fixtures::{
     Ball, RandomNumbers, all_kinds, all_materials, profiles, random_receiver, room,
 };
 use crate::lightcut::{Receiver, gather_all};
-use crate::lights::{LightTrees};
+use crate::lights::LightTrees;
 use base::math::Frame;
 use base::progress::Control;
 use glam::Vec3;
@@ -42,12 +42,7 @@ fn samples_have_the_mean_of_all_virtual_lights() {
     let (mut squares, mut count) = (0.0, 0);
     for round in 0..8u32 {
         let mut numbers = RandomNumbers(round << 20);
-        let trees = LightTrees::build(
-            &all_kinds(60, 1.0, &mut numbers),
-            profiles(),
-            2.0,
-            &Control::new(),
-        );
+        let trees = LightTrees::build(&all_kinds(60, 1.0, &mut numbers), profiles(), 2.0, &Control::new());
         let transfer = Transfer::new(&trees, 2.0);
         let receivers: Vec<Receiver> =
             (0..16).map(|_| random_receiver(&materials, &scene, 1.0, &mut numbers)).collect();
@@ -72,8 +67,7 @@ fn samples_have_the_mean_of_all_virtual_lights() {
 #[test]
 fn single_lights_give_no_more_than_their_share() {
     let mut numbers = RandomNumbers(3);
-    let trees =
-        LightTrees::build(&[room(3000, &mut numbers)], Vec::new(), 1.7, &Control::new());
+    let trees = LightTrees::build(&[room(3000, &mut numbers)], Vec::new(), 1.7, &Control::new());
     let transfer = Transfer::new(&trees, 1.7);
     // Each point is close to one of the lights, and looks past it into the room.
     let close = |i: usize| {
@@ -135,8 +129,7 @@ fn a_sample_stands_for_all_light_of_its_cluster() {
 #[test]
 fn samples_are_as_many_as_the_light_is_worth() {
     let mut numbers = RandomNumbers(5);
-    let trees =
-        LightTrees::build(&[room(500, &mut numbers)], Vec::new(), 1.7, &Control::new());
+    let trees = LightTrees::build(&[room(500, &mut numbers)], Vec::new(), 1.7, &Control::new());
     let transfer = Transfer::new(&trees, 1.7);
     let receiver = Receiver::irradiance(Vec3::new(0.3, 0.4, 0.2), Vec3::Y, &Frame::from_normal(Vec3::Y));
     let total = luminance(gather_all(&transfer, &BALL, &receiver));
@@ -174,8 +167,7 @@ impl Visibility for Screen {
 #[test]
 fn points_that_see_less_of_the_light_take_more_samples() {
     let mut numbers = RandomNumbers(7);
-    let trees =
-        LightTrees::build(&[room(2000, &mut numbers)], Vec::new(), 1.7, &Control::new());
+    let trees = LightTrees::build(&[room(2000, &mut numbers)], Vec::new(), 1.7, &Control::new());
     let transfer = Transfer::new(&trees, 1.7);
     let frame = Frame::from_normal(Vec3::Y);
     let mut points = ReceiverPacket::new();
