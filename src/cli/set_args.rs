@@ -278,7 +278,7 @@ mod tests {
             ("--set epsilon=2", "'--set epsilon=<EPSILON>': expected from 0 to 1"),
             ("--set epsilon", "--set epsilon"),
             ("--set epsilonn=2", "there is no setting epsilonn here; `lightsplat help settings`"),
-            ("--set tree=oak", "divisive"),
+            ("--set footprints=oak", "anisotropic"),
             ("--epsilon 0.1", "--epsilon is a setting now: write --set epsilon=0.1"),
             ("--epsilon=0.1", "write --set epsilon=0.1"),
             ("--keep-noisy -q", "write --set keep-noisy=on"),

@@ -225,10 +225,11 @@ fn quality_of_denoising_goes_with_the_work_or_is_as_asked() {
     single("noisy.exr", &["--aov", "albedo,normal"]);
     single("clean.exr", &["--denoise", "--set", "denoise-quality=fast", "--set", "keep-noisy=on"]);
     assert_eq!(file(&sandbox, "clean.exr").layer("noisy").unwrap(), color(&sandbox, "noisy.exr"));
+    // Layers are means over the image's samples. Guides come from a survey, with or without layers.
+    single("layers.exr", &["--denoise", "--set", "denoise-quality=fast", "--aov", "albedo,normal"]);
+    let layers = file(&sandbox, "layers.exr");
+    assert_eq!(color(&sandbox, "layers.exr"), color(&sandbox, "clean.exr"));
+    assert_eq!(layers.layer("albedo").unwrap(), file(&sandbox, "noisy.exr").layer("albedo").unwrap());
     sandbox.run(&["denoise", "noisy.exr", "-o", "later.exr", "--quality", "fast"]).expect(0);
-    // But for guides of sixteen bits that paths find on their way.
-    let [later, clean] = ["later.exr", "clean.exr"].map(|name| color(&sandbox, name));
-    let off = |(a, b): (&Rgb, &Rgb)| (*a - *b).abs().max_element() / (0.01 + b.max_element());
-    let error = later.pixels.iter().zip(&clean.pixels).map(off).fold(0.0, f32::max);
-    assert!(error < 1e-4, "{error}");
+    assert_ne!(color(&sandbox, "later.exr"), color(&sandbox, "clean.exr"));
 }

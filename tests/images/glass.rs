@@ -102,7 +102,7 @@ pub(crate) fn by_so_many_paths(world: &WorldAndView, paths: u32) -> DVec3 {
 ///
 /// Few virtual lights count behind a coloured pane. They scatter the mean of one seed by a per cent.
 pub(crate) fn by_default(world: &WorldAndView) -> DVec3 {
-    const SEEDS: u32 = 2;
+    const SEEDS: u32 = 4;
     let spp = spp_of(world, (1 << 17) / SEEDS);
     let settings = vpl::Settings { spp, ..with_lights_over(SEEDS, vpl::Settings::cache()) };
     let of_seed = |seed| mean_by(world, &vpl::Settings { seed, ..settings });
