@@ -68,6 +68,8 @@ pub struct Candidate {
     pub cell: u32,
     /// Approximate distance to the next eye sample: the unit of footprint radii.
     pub spacing: f32,
+    /// Distance to the nearest visible point that rises from the surface; infinite if there is none nearby.
+    pub clearance: f32,
     /// Coat that the light has to pass (see [`world::material::Bsdf::coat`]); 0 without a coat.
     pub coat: u32,
     /// Maximum number of edges that light may take to the point.

@@ -78,9 +78,10 @@ impl<'a> CacheFrame<'a> {
         stats: &mut Stats,
     ) {
         let count = self.targets.points.len();
+        let reach = source.settings().farthest();
         let CellLimits { least, least_lacking, .. } = source.cells();
         let least_cell = least.max(1) as usize;
-        let mut level = first_level(count, least_cell, source.settings().farthest());
+        let mut level = first_level(count, least_cell, reach);
         while count >> level >= least_cell {
             for parity in 0..2 {
                 if control.is_cancelled() {
@@ -91,6 +92,7 @@ impl<'a> CacheFrame<'a> {
                         &self.targets,
                         &self.splats,
                         self.cached,
+                        reach,
                         CandidateStep { level, parity, least_lacking },
                     )
                 });

@@ -1,12 +1,14 @@
 //! Footprint of a record: its size, aspect and orientation.
 //!
 //! Paper: Herzog et al. 2009, section 5.1, Eqs. 11 and 12 (circles, and ellipses from gradients); Schwarzhaupt et
-//! al. 2012 (ellipses from second derivatives that include occlusion).
+//! al. 2012 (ellipses from second derivatives that include occlusion); Krivanek et al., *Making Radiance and Irradiance
+//! Caching Practical*, 2006 (footprints end before geometry that the rays of a record may miss).
 //!
 //! Units: metres.
 //!
 //! Deviations: footprints from second derivatives are at most twice as long as wide, footprints from gradients about
-//! eleven times (1/0.3²).
+//! eleven times (1/0.3²). Geometry near a record is found at the frame's shading points, not by the rays of
+//! neighbouring records.
 
 use super::cells::Candidate;
 use super::settings::{CacheSettings, Footprints};
@@ -20,6 +22,10 @@ const NORMAL_SCALE: f32 = 5.0;
 
 /// Minimum ratio of the radius along the gradient to that of the circle of equal area.
 const MIN_SQUEEZE: f32 = 0.3;
+
+/// Maximum ratio of the radius to the distance of the nearest point that rises from the surface. Low, near geometry
+/// casts shadows that the rays of a record miss.
+const CLEARANCE: f32 = 0.7;
 
 /// Maximum ratio of the axes of footprints from second derivatives.
 const MAX_ASPECT: f32 = 2.0;
@@ -63,7 +69,8 @@ impl<'a> FootprintLimits<'a> {
     /// Returns the bounds for a record of light of `origin` at `candidate`. Geometry at `distance` sends or blocks the
     /// light.
     pub fn new(settings: &'a CacheSettings, origin: Origin, candidate: &Candidate, distance: f32) -> Self {
-        let radii = settings.reach[origin as usize].map(|r| r * candidate.spacing);
+        let [min, max] = settings.reach[origin as usize].map(|r| r * candidate.spacing);
+        let radii = [min, max.min(CLEARANCE * candidate.clearance).max(min)];
         FootprintLimits { settings, accuracy: settings.accuracy[origin as usize], distance, radii }
     }
 }
@@ -157,11 +164,18 @@ mod tests {
     fn limits_are_those_of_the_layer_in_spacings() {
         let settings = CacheSettings::default();
         for origin in Origin::ALL {
-            let at = Candidate { spacing: 0.5, ..candidate(Vec3::ZERO, Vec3::Z) };
+            let mut at = Candidate { spacing: 0.5, ..candidate(Vec3::ZERO, Vec3::Z) };
             let [least, largest] = settings.reach[origin as usize].map(|r| 0.5 * r);
             let limits = FootprintLimits::new(&settings, origin, &at, 7.0);
             assert_eq!((limits.accuracy, limits.distance), (settings.accuracy[origin as usize], 7.0));
             assert_eq!(limits.radii, [least, largest]);
+            // Nearby geometry lowers the largest radius, though not below the least.
+            for (clearance, radius) in [(0.5 * largest / CLEARANCE, 0.5 * largest), (0.0, least)] {
+                at.clearance = clearance;
+                let limits = FootprintLimits::new(&settings, origin, &at, 7.0);
+                assert_eq!(limits.radii[0], least);
+                assert_near(limits.radii[1], radius);
+            }
         }
     }
 

@@ -5,7 +5,7 @@
 //! index: the sample nearest to the middle of the uncovered samples in the cell.
 //!
 //! Known light masks the errors of a record, as the other layer does in section 6. Sampled direct light counts only as
-//! far as the darkest part of the record's cell has it.
+//! far as the darkest part of the record's neighbourhood has it.
 
 use super::cells::Candidate;
 use super::splat::Splat;
@@ -15,6 +15,9 @@ use base::math::luminance;
 use glam::Vec3;
 use rayon::prelude::*;
 use world::SurfacePoint;
+
+/// Levels up from a cell to the one whose darkest part the errors of its record are judged against.
+const BASELINE_LEVELS_UP: u32 = 2;
 
 /// Cells of the index that get candidates in one step: every second cell of a level, so that siblings take turns.
 #[derive(Clone, Copy, Debug)]
@@ -43,11 +46,12 @@ pub fn missing(
 }
 
 /// Returns the candidates of the cells of a turn. A sibling in the later turn may already be covered by the record of
-/// the earlier one.
+/// the earlier one. No footprint is larger than `reach` spacings.
 pub fn candidates(
     targets: &Targets,
     splats: &DirectIndirect<Splat>,
     cached: DirectIndirect<bool>,
+    reach: f32,
     step: CandidateStep,
 ) -> Vec<Candidate> {
     let CandidateStep { level, parity, least_lacking } = step;
@@ -72,7 +76,11 @@ pub fn candidates(
             let mut candidate =
                 candidate(targets, splats, sample, missing(targets, splats, cached, sample, 0.0));
             candidate.cell = (targets.points.len() >> level) as u32;
-            candidate.baseline_luminance += targets.darkest_baseline(targets.index.range(level, cell));
+            // The footprint may reach beyond the cell.
+            let up = level.min(BASELINE_LEVELS_UP);
+            candidate.baseline_luminance +=
+                targets.darkest_baseline(targets.index.range(level - up, cell >> up));
+            candidate.clearance = targets.clearance(&candidate.point, reach * candidate.spacing);
             Some(candidate)
         })
         .collect()
@@ -92,6 +100,7 @@ fn candidate(
         cell: 0,
         point: SurfacePoint { position: point.position, normal: point.normal, geometric_normal },
         spacing: point.spacing,
+        clearance: f32::INFINITY,
         coat: point.coat.into(),
         edges: point.edges,
         bands: targets.bands[sample],
@@ -109,6 +118,7 @@ mod tests {
     use crate::lights::Origin;
     use base::math::Rgb;
 
+    const REACH: f32 = 10.0;
     const BOTH: DirectIndirect<bool> = DirectIndirect { direct: true, indirect: true };
 
     fn splats(targets: &Targets, records: &Records) -> DirectIndirect<Splat> {
@@ -133,8 +143,13 @@ mod tests {
         for level in 0..6 {
             let mut cells = Vec::new();
             for parity in 0..2 {
-                let found =
-                    candidates(&targets, &splats, BOTH, CandidateStep { level, parity, least_lacking: 0.0 });
+                let found = candidates(
+                    &targets,
+                    &splats,
+                    BOTH,
+                    REACH,
+                    CandidateStep { level, parity, least_lacking: 0.0 },
+                );
                 assert_eq!(found.len(), (1 << level) / 2 + usize::from(level == 0));
                 for (pair, candidate) in found.iter().enumerate() {
                     let cell = if level == 0 { 0 } else { 2 * pair + parity };
@@ -168,6 +183,7 @@ mod tests {
                         &targets,
                         &splats,
                         cached,
+                        REACH,
                         CandidateStep { level: 10, parity, least_lacking: 0.0 },
                     )
                 })
@@ -189,6 +205,7 @@ mod tests {
             &targets,
             &splats,
             one(Origin::Direct),
+            REACH,
             CandidateStep { level: 0, parity: 0, least_lacking: 0.0 },
         );
         assert!(coarse.len() == 1 && (coarse[0].point.position - Vec3::new(0.75, 0.5, 0.0)).length() < 0.04);
@@ -202,13 +219,13 @@ mod tests {
         let cached = DirectIndirect { direct: false, indirect: true };
         let count = |level, least_lacking| -> usize {
             let step = |parity| CandidateStep { level, parity, least_lacking };
-            (0..2).map(|parity| candidates(&targets, &splats, cached, step(parity)).len()).sum()
+            (0..2).map(|parity| candidates(&targets, &splats, cached, REACH, step(parity)).len()).sum()
         };
         // Half of the floor is covered: cells of one sample are covered, or lack all light.
         let root = CandidateStep { level: 0, parity: 0, least_lacking: 0.51 };
-        assert!(candidates(&targets, &splats, cached, root).is_empty());
+        assert!(candidates(&targets, &splats, cached, REACH, root).is_empty());
         assert_eq!(
-            candidates(&targets, &splats, cached, CandidateStep { least_lacking: 0.5, ..root }).len(),
+            candidates(&targets, &splats, cached, REACH, CandidateStep { least_lacking: 0.5, ..root }).len(),
             1
         );
         assert_eq!([0.0, 0.25, 1.0].map(|least| count(10, least)), [512; 3]);
@@ -225,12 +242,16 @@ mod tests {
         let albedo = luminance(floor.points.surfaces.get(0).bsdf.base_brdf() * std::f32::consts::PI);
         let (mut bright, mut dark) = (0, 0);
         for parity in 0..2 {
-            for found in
-                candidates(&targets, &splats, BOTH, CandidateStep { level: 6, parity, least_lacking: 0.0 })
-            {
+            for found in candidates(
+                &targets,
+                &splats,
+                BOTH,
+                REACH,
+                CandidateStep { level: 6, parity, least_lacking: 0.0 },
+            ) {
                 let cell = floor.index.range(6, 0).len();
-                let range = floor.index.range(6, found.sample as usize / cell);
-                if range.clone().all(lit) {
+                let wider = floor.index.range(4, found.sample as usize / (4 * cell));
+                if wider.clone().all(lit) {
                     let expected = std::f32::consts::PI * reflected / albedo;
                     assert!((found.baseline_luminance / expected - 1.0).abs() < 1e-4);
                     bright += 1;
@@ -241,8 +262,13 @@ mod tests {
             }
         }
         assert_eq!((bright, dark), (32, 0), "the middle of the floor divides cells of that level");
-        let coarse =
-            candidates(&targets, &splats, BOTH, CandidateStep { level: 0, parity: 0, least_lacking: 0.0 });
+        let coarse = candidates(
+            &targets,
+            &splats,
+            BOTH,
+            REACH,
+            CandidateStep { level: 0, parity: 0, least_lacking: 0.0 },
+        );
         assert_eq!(coarse[0].baseline_luminance, 0.0);
     }
 
@@ -274,8 +300,13 @@ mod tests {
         targets.cacheable.fill(false);
         targets.cacheable[11] = true;
         let splats = splats(&targets, &Records::default());
-        let found =
-            candidates(&targets, &splats, BOTH, CandidateStep { level: 0, parity: 0, least_lacking: 0.0 });
+        let found = candidates(
+            &targets,
+            &splats,
+            BOTH,
+            REACH,
+            CandidateStep { level: 0, parity: 0, least_lacking: 0.0 },
+        );
         assert!(found.len() == 1 && found[0].sample == 11);
     }
 }

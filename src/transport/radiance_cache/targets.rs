@@ -8,10 +8,14 @@ use glam::Vec3;
 use rayon::prelude::*;
 use std::f32::consts::PI;
 use std::ops::Range;
+use world::SurfacePoint;
 use world::material::Bsdf;
 
 /// Number of parts into which a range of points is divided to find its darkest one.
 const PARTS: usize = 8;
+
+/// Minimum sine of the angle above a surface at which a point rises from it.
+const RISE: f32 = 0.05;
 
 /// Shading points that records are splatted onto.
 pub struct Targets<'a> {
@@ -66,6 +70,28 @@ impl<'a> Targets<'a> {
         self
     }
 
+    /// Returns the distance, up to `reach`, from a point of surface to the nearest target that rises from the surface;
+    /// infinite if there is none. Points of the same curved surface do not rise from it.
+    pub fn clearance(&self, from: &SurfacePoint, reach: f32) -> f32 {
+        let (mut nearest, mut nearest_sq) = (f32::INFINITY, reach * reach);
+        self.index.leaves_near(from.position, reach, |leaf| {
+            for point in &self.points.geometry[self.index.leaf(leaf)] {
+                let offset = point.position - from.position;
+                let distance_sq = offset.length_squared();
+                if !(distance_sq < nearest_sq) {
+                    continue;
+                }
+                // A chord of an arc rises from the tangent plane at its end, but not from the one at its middle.
+                let height = offset.dot(from.normal).min(0.5 * offset.dot(from.normal + point.normal));
+                let distance = distance_sq.sqrt();
+                if height > RISE * distance {
+                    (nearest, nearest_sq) = (distance, distance_sq);
+                }
+            }
+        });
+        nearest
+    }
+
     /// Returns the just visible difference of luminance at a point, if known.
     #[inline]
     pub fn visible(&self, point: usize) -> Option<f32> {
@@ -115,5 +141,45 @@ impl<'a> Targets<'a> {
     #[inline]
     pub fn geometry(&self, range: Range<usize>) -> impl Iterator<Item = (&PointGeometry, u8)> {
         self.points.geometry[range.clone()].iter().zip(self.bands[range].iter().copied())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::fixtures::Floor;
+    use super::*;
+
+    fn clearance(positions: &[Vec3], normals: impl Fn(Vec3) -> Vec3, from: Vec3, reach: f32) -> f32 {
+        let mut floor = Floor::new(positions);
+        for point in &mut floor.points.geometry {
+            point.normal = normals(point.position);
+        }
+        let normal = normals(from);
+        floor.targets().clearance(&SurfacePoint { position: from, normal, geometric_normal: normal }, reach)
+    }
+
+    #[test]
+    fn a_ledge_is_near_and_neither_the_floor_nor_what_lies_deeper_is() {
+        let grid = (0..1024).map(|i| Vec3::new((i % 32) as f32, (i / 32) as f32, 0.0) / 32.0);
+        let raised =
+            |by: f32| grid.clone().map(|p| p + Vec3::Z * if p.x < 0.25 { by } else { 0.0 }).collect();
+        let from = Vec3::new(0.5, 0.5, 0.0);
+        let of = |points: Vec<Vec3>, reach| clearance(&points, |_| Vec3::Z, from, reach);
+        // The last column of the ledge is at 7/32.
+        let distance = Vec3::new(9.0 / 32.0, 0.0, 0.05).length();
+        assert!((of(raised(0.05), 1.0) - distance).abs() < 1e-6);
+        for (by, reach) in [(0.05, 0.25), (0.0, 1.0), (-0.05, 1.0)] {
+            assert_eq!(of(raised(by), reach), f32::INFINITY, "{by} {reach}");
+        }
+    }
+
+    #[test]
+    fn a_hollow_does_not_rise_from_itself() {
+        let at = |angle: f32| Vec3::new(angle.sin(), 0.0, 1.0 - angle.cos());
+        let points: Vec<Vec3> = (-20..=20).map(|i| at(0.05 * i as f32)).collect();
+        let centre = Vec3::Z;
+        let inwards = |p: Vec3| (centre - p).normalize();
+        assert_eq!(clearance(&points, inwards, at(0.0), 10.0), f32::INFINITY);
+        assert!(clearance(&points, |_| Vec3::Z, at(0.0), 10.0) < 0.2);
     }
 }

@@ -54,6 +54,7 @@ fn open_floor(samples: &EyePass) -> Vec<Candidate> {
             point: SurfacePoint { position, normal, geometric_normal },
             cell: 256,
             spacing: point.spacing,
+            clearance: f32::INFINITY,
             coat: 0,
             edges: u16::MAX,
             bands: 0,
