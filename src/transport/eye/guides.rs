@@ -18,8 +18,10 @@ use world::World;
 use world::light::Learned;
 use world::view::View;
 
-/// Rule by which pixels at edges get more eye rays than others. The means of pixels without edges need fewer.
-const RULE: MoreSamples = MoreSamples { samples: 16, max_difference: 0.1 };
+/// Rule by which pixels at edges of surfaces get more eye rays than others. Textures count if their contrast is great:
+/// texels are means over footprints.
+const RULE: MoreSamples =
+    MoreSamples { samples: 16, max_difference: 0.1, max_albedo_difference: 0.3, albedo_edge: f32::INFINITY };
 
 /// Changes the seed for the eye rays of a survey.
 const SURVEY: u32 = 0x9e6c_63d1;

@@ -24,14 +24,18 @@ pub(super) const FIRST_SAMPLES: u32 = 4;
 pub(super) struct MoreSamples {
     /// Number of samples of pixels that get more.
     pub samples: u32,
-    /// Maximum difference of albedo, and of a normal's coordinates, between samples that count as equal.
+    /// Maximum difference of a normal's coordinates between samples that count as equal.
     pub max_difference: f32,
+    /// Maximum difference of albedo between samples that count as equal.
+    pub max_albedo_difference: f32,
+    /// Minimum difference of albedo between pixels on both sides of an edge.
+    pub albedo_edge: f32,
 }
 
 /// Maximum difference between samples that count as equal, for layers.
 const MAX_SAMPLE_DIFFERENCE: f32 = 0.02;
 
-/// Minimum difference of albedo, or of a normal's coordinates, between pixels on both sides of an edge.
+/// Minimum difference of a normal's coordinates, and for layers of albedo, between pixels on both sides of an edge.
 const MIN_EDGE_DIFFERENCE: f32 = 0.1;
 
 /// Maximum length of a chain through mirrors and glass, in edges.
@@ -51,7 +55,12 @@ pub struct FeatureSettings {
 impl FeatureSettings {
     /// Returns the rule for layers.
     pub(super) fn rule(&self) -> MoreSamples {
-        MoreSamples { samples: self.spp.clamp(1, MAX_SAMPLES), max_difference: MAX_SAMPLE_DIFFERENCE }
+        MoreSamples {
+            samples: self.spp.clamp(1, MAX_SAMPLES),
+            max_difference: MAX_SAMPLE_DIFFERENCE,
+            max_albedo_difference: MAX_SAMPLE_DIFFERENCE,
+            albedo_edge: MIN_EDGE_DIFFERENCE,
+        }
     }
 }
 
@@ -78,8 +87,10 @@ pub(super) struct PixelFeatures {
     pub reflects: bool,
     /// True if the samples, and those of the neighbours, are nearly equal.
     pub is_even: bool,
-    /// Maximum difference of a sample from those before it; infinite between meshes.
+    /// Maximum difference of a sample's normal from those before it; infinite between meshes.
     difference: f32,
+    /// Maximum difference of a sample's albedo from those before it.
+    albedo_difference: f32,
 }
 
 /// Features that are not averaged, of the nearest sample.
@@ -107,7 +118,7 @@ impl FeatureSampler<'_> {
     /// Returns the features of the film pixels from `first` to `last`. All samples are taken if the first few differ,
     /// in the pixel or between neighbours.
     pub fn pixels(&self, rule: MoreSamples, first: [u32; 2], last: [u32; 2]) -> Vec<PixelFeatures> {
-        let MoreSamples { samples, max_difference } = rule;
+        let samples = rule.samples;
         // Neighbours outside the window are sampled too, so that a crop has the features of the full image.
         let film = self.view.window.film;
         let (left, top) = (first[0].saturating_sub(1), first[1].saturating_sub(1));
@@ -126,7 +137,7 @@ impl FeatureSampler<'_> {
             near(y, top, bottom).any(|y| {
                 near(x, left, right).any(|x| {
                     let other = &pixels[at([x, y])];
-                    other.difference > max_difference || pixel.is_beside_edge(other)
+                    other.varies(&rule) || pixel.is_beside_edge(other, rule.albedo_edge)
                 })
             })
         };
@@ -214,8 +225,13 @@ impl PixelFeatures {
             |vertex: &ChainVertex, normal: Vec3| if normal.dot(vertex.out) < 0.0 { -normal } else { normal };
         let normal = vertex.map_or(Vec3::ZERO, |vertex| towards(&vertex, vertex.surface.frame.normal));
         if self.samples > 0 {
+            let off = |value: Vec3, sum: Vec3| (value - sum / self.samples as f32).abs().max_element();
             let mesh = vertex.map(|vertex| vertex.surface.mesh);
-            self.difference = self.difference.max(self.difference_of(seen.albedo, normal, mesh));
+            let is_same = mesh == self.nearest.map(|nearest| nearest.mesh);
+            let by_normal = if is_same { off(normal, self.normal) } else { f32::INFINITY };
+            let by_albedo = off(seen.albedo, self.albedo);
+            self.difference = self.difference.max(by_normal);
+            self.albedo_difference = self.albedo_difference.max(by_albedo);
         }
         self.samples += 1;
         self.reflects |= seen.reflects;
@@ -235,22 +251,18 @@ impl PixelFeatures {
     }
 
     /// Returns true if an edge lies between two pixels whose own samples are nearly equal.
-    fn is_beside_edge(&self, other: &PixelFeatures) -> bool {
+    fn is_beside_edge(&self, other: &PixelFeatures, albedo_edge: f32) -> bool {
         let (n, m) = (self.samples as f32, other.samples as f32);
-        let differ = |a: Vec3, b: Vec3| (a / n - b / m).abs().max_element() > MIN_EDGE_DIFFERENCE;
+        let differ = |a: Vec3, b: Vec3, least: f32| (a / n - b / m).abs().max_element() > least;
         let mesh = |pixel: &PixelFeatures| pixel.nearest.map(|nearest| nearest.mesh);
-        mesh(self) != mesh(other) || differ(self.albedo, other.albedo) || differ(self.normal, other.normal)
+        mesh(self) != mesh(other)
+            || differ(self.albedo, other.albedo, albedo_edge)
+            || differ(self.normal, other.normal, MIN_EDGE_DIFFERENCE)
     }
 
-    /// Returns the difference of another sample from the mean so far, in albedo and normal. It is infinite if the
-    /// sample lies on another mesh than the nearest one.
-    fn difference_of(&self, albedo: Rgb, normal: Vec3, mesh: Option<u32>) -> f32 {
-        let n = self.samples as f32;
-        let off = |value: Vec3, sum: Vec3| (value - sum / n).abs().max_element();
-        match mesh == self.nearest.map(|nearest| nearest.mesh) {
-            true => off(albedo, self.albedo).max(off(normal, self.normal)),
-            false => f32::INFINITY,
-        }
+    /// Returns true if samples differ by more than a rule allows.
+    fn varies(&self, rule: &MoreSamples) -> bool {
+        self.difference > rule.max_difference || self.albedo_difference > rule.max_albedo_difference
     }
 }
 
