@@ -8,6 +8,7 @@
 //! pixels of every square in the order share one net.
 //! Deviations: blocks have at most 16 by 16 pixels, and each has a sequence of its own, so that 32 bits are enough.
 
+use base::math::morton;
 use base::sampling::hash;
 
 /// Binary logarithm of the side of a block.
@@ -24,16 +25,9 @@ pub fn sequence([x, y]: [u32; 2], seed: u32, sample: u32, samples: u32) -> [u32;
     let run = sample.checked_shr(bits).unwrap_or(0);
     let block = hash(hash(x >> BLOCK_BITS, y >> BLOCK_BITS), hash(seed ^ BLOCKS, run));
     let inside = (1 << BLOCK_BITS) - 1;
-    let place = spread(x & inside) | spread(y & inside) << 1;
+    let place = morton(x & inside, y & inside) as u32;
     let first = place.checked_shl(bits).unwrap_or(0);
     [block, first.wrapping_add(sample - (run.checked_shl(bits).unwrap_or(0)))]
-}
-
-/// Moves the lowest four bits of a number apart, to every second bit.
-#[inline]
-fn spread(x: u32) -> u32 {
-    let x = (x | x << 2) & 0x33;
-    (x | x << 1) & 0x55
 }
 
 #[cfg(test)]
