@@ -160,11 +160,12 @@ fn worlds() -> [(WorldAndView, &'static str); 6] {
     ]
 }
 
-/// Panes and bulbs whose glass absorbs light are in `absorption`.
 #[test]
-fn light_comes_through_a_curtain() {
-    let world = two_rooms(curtain);
-    assert_means_within(NOISE, by_default(&world), by_so_many_paths(&world, 1 << 19), "curtain");
+fn light_comes_through_panes_and_bulbs() {
+    let [_, solid_pane, _, curtain, bulb, _] = worlds();
+    for (world, what) in &[solid_pane, curtain, bulb] {
+        assert_means_within(NOISE, by_default(world), by_so_many_paths(world, 1 << 19), what);
+    }
 }
 
 /// A sun that shines through the hole.
