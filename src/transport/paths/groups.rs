@@ -17,7 +17,7 @@ use world::{Surfaces16, World};
 const MIN_COS: f32 = 0.995;
 
 /// Maximum angle between the normals of a group, as a share of the roughness α of its sharpest lobe.
-const ALPHA_SHARE: f32 = 0.25;
+const ALPHA_SHARE: f32 = 0.18;
 
 /// Minimum cosine between the directions towards the eye of samples that are one shading point: 11 degrees.
 pub(crate) const MIN_OUT_COS: f32 = 0.98;
