@@ -8,20 +8,26 @@
 use super::seen::{FIRST_SAMPLES, FeatureSampler, FeatureSettings, MoreSamples, PixelFeatures};
 use super::tiles::by_tiles;
 use crate::irradiance::PathEnds;
-use crate::paths::{Estimand, PathPolicy, Position};
+use crate::paths::{Estimand, PathPolicy};
 use base::film::{Image, Layer, Window};
 use base::math::Rgb;
 use base::progress::Control;
 use glam::Vec3;
 use rayon::prelude::*;
+use std::ops::Range;
 use world::World;
 use world::light::Learned;
 use world::view::View;
 
 /// Rule by which pixels at edges of surfaces get more eye rays than others. Textures count if their contrast is great:
 /// texels are means over footprints.
-const RULE: MoreSamples =
-    MoreSamples { samples: 16, max_difference: 0.1, max_albedo_difference: 0.3, albedo_edge: f32::INFINITY };
+const RULE: MoreSamples = MoreSamples {
+    samples: 16,
+    max_difference: 0.1,
+    max_albedo_difference: 0.3,
+    albedo_edge: f32::INFINITY,
+    beside_others: false,
+};
 
 /// Changes the seed for the eye rays of a survey.
 const SURVEY: u32 = 0x9e6c_63d1;
@@ -115,10 +121,10 @@ impl PackedGuides {
 /// First surfaces of paths that are traced together.
 #[derive(Default)]
 pub struct FirstSurfaces {
+    /// Number of the first path of each pixel.
+    first: u32,
     /// Number of consecutive paths per pixel.
     paths: u32,
-    /// Positions of the paths and their weights.
-    positions: Vec<Position>,
     pixels: Vec<Guide>,
     /// Paths that hit a mirror or glass first.
     chained: Vec<u32>,
@@ -126,13 +132,11 @@ pub struct FirstSurfaces {
 }
 
 impl FirstSurfaces {
-    /// Clears the surfaces seen. The next paths have these positions, in order, `paths` in each pixel.
-    pub fn begin(&mut self, positions: impl Iterator<Item = Position>, paths: u32) {
-        self.paths = paths.max(1);
-        self.positions.clear();
-        self.positions.extend(positions);
+    /// Clears the surfaces seen. The next paths are those of these numbers in each of so many pixels, in order.
+    pub fn begin(&mut self, pixels: usize, numbers: Range<u32>) {
+        (self.first, self.paths) = (numbers.start, numbers.len().max(1) as u32);
         self.pixels.clear();
-        self.pixels.resize(self.positions.len() / self.paths as usize, Guide::default());
+        self.pixels.resize(pixels, Guide::default());
         self.chained.clear();
     }
 
@@ -141,11 +145,7 @@ impl FirstSurfaces {
     #[inline]
     pub fn see(&mut self, path: u32, albedo: Option<Rgb>, normal: Vec3) {
         match albedo {
-            Some(albedo) => {
-                let weight = self.positions[path as usize].weight;
-                let guide = Guide { albedo: albedo * weight, normal: normal * weight };
-                self.pixels[(path / self.paths) as usize].add(guide);
-            }
+            Some(albedo) => self.pixels[(path / self.paths) as usize].add(Guide { albedo, normal }),
             None => self.chained.push(path),
         }
     }
@@ -163,18 +163,11 @@ impl FirstSurfaces {
         }
         self.behind.clear();
         self.behind.resize(film_pixels.len(), PixelFeatures::default());
-        let paths = self.paths;
-        let positions = &self.positions;
-        let samples =
-            self.chained.iter().map(|path| ((path / paths) as usize, positions[*path as usize].ray));
+        let (first, paths) = (self.first, self.paths);
+        let samples = self.chained.iter().map(|path| ((path / paths) as usize, first + path % paths));
         FeatureSampler { world, view, settings: &settings }.add(film_pixels, &mut self.behind, samples);
-        // Paths of a pixel that are chained see one surface, hence have one weight, but for merged strata.
-        let mut weights = vec![0.0; self.pixels.len()];
-        self.chained.iter().for_each(|path| {
-            weights[(path / paths) as usize] = positions[*path as usize].weight;
-        });
-        for ((guide, pixel), weight) in self.pixels.iter_mut().zip(&self.behind).zip(weights) {
-            guide.add(Guide { albedo: pixel.albedo * weight, normal: pixel.normal * weight });
+        for (guide, pixel) in self.pixels.iter_mut().zip(&self.behind) {
+            guide.add(Guide { albedo: pixel.albedo, normal: pixel.normal });
         }
     }
 

@@ -30,6 +30,8 @@ pub(super) struct MoreSamples {
     pub max_albedo_difference: f32,
     /// Minimum difference of albedo between pixels on both sides of an edge.
     pub albedo_edge: f32,
+    /// True if pixels beside those whose samples differ get more samples, too.
+    pub beside_others: bool,
 }
 
 /// Maximum difference between samples that count as equal, for layers.
@@ -60,6 +62,7 @@ impl FeatureSettings {
             max_difference: MAX_SAMPLE_DIFFERENCE,
             max_albedo_difference: MAX_SAMPLE_DIFFERENCE,
             albedo_edge: MIN_EDGE_DIFFERENCE,
+            beside_others: true,
         }
     }
 }
@@ -134,12 +137,16 @@ impl FeatureSampler<'_> {
             |from: u32, first: u32, last: u32| from.saturating_sub(1).max(first)..=(from + 1).min(last);
         let differs = |&[x, y]: &[u32; 2]| {
             let pixel = &pixels[at([x, y])];
-            near(y, top, bottom).any(|y| {
-                near(x, left, right).any(|x| {
-                    let other = &pixels[at([x, y])];
-                    other.varies(&rule) || pixel.is_beside_edge(other, rule.albedo_edge)
+            pixel.varies(&rule)
+                || near(y, top, bottom).any(|y| {
+                    near(x, left, right).any(|x| {
+                        let other = &pixels[at([x, y])];
+                        match other.varies(&rule) {
+                            true => rule.beside_others,
+                            false => pixel.is_beside_edge(other, rule.albedo_edge),
+                        }
+                    })
                 })
-            })
         };
         let again: Vec<usize> = inside().filter(differs).map(at).collect();
         inside().for_each(|pixel| pixels[at(pixel)].is_even = true);

@@ -8,7 +8,7 @@ use super::merge::{MergedPoint, MergedPoints};
 use super::{EyeCounts, EyeSettings, FeatureSettings, guide};
 use crate::caustics::Caustics;
 use crate::irradiance::PathEnds;
-use crate::paths::{Batch, Estimand, LightSamples, PathStart, Position, RayCounts, ScatteredEdges, start};
+use crate::paths::{Batch, Estimand, LightSamples, PathStart, RayCounts, ScatteredEdges, start};
 use base::math::{LANES, Rgb, luminance};
 use base::progress::Control;
 use std::ops::Range;
@@ -215,8 +215,7 @@ impl<'a, 'w> Tracer<'a, 'w> {
                 ends.found.clear();
                 ends.order.clear();
                 if let Some(first_surfaces) = &mut ends.first_surfaces {
-                    let own = pixels.iter().flat_map(|_| part.clone().map(Position::own));
-                    first_surfaces.begin(own, n as u32);
+                    first_surfaces.begin(pixels.len(), part.clone());
                 }
                 let mut counts = RayCounts::default();
                 let mut radiance = batch.trace(self.world, self.settings.max_depth, ends, &mut counts);

@@ -61,7 +61,7 @@ impl<'a> Coverage<'a> {
     }
 
     /// Returns the number of eye rays in a pixel that is divided; 0 for a single path, which has no choice.
-    pub fn rays(&self) -> u32 {
+    fn rays(&self) -> u32 {
         if self.paths > 1 { (RAYS_PER_PATH * self.paths).next_multiple_of(LANES as u32) } else { 0 }
     }
 
